@@ -144,18 +144,6 @@ def judged(result: Result, how: FatigueAssessment) -> Assessed:
     return Assessed(how, [], result.assessed_reserves(how))
 
 
-def schema() -> outputs.Schema:
-    """Return the JSON schema of :func:`document`."""
-    numbers = dict.fromkeys(("start", "stop", "largest", "parameter", "damage"), outputs.NUMBER)
-    words = "counted cycles at the hot spot, the largest damage first; start and stop are load points"
-    cycles = outputs.list_of(outputs.object_of(numbers | {"times": outputs.WHOLE})) | {"description": words}
-    rest = {"cycles": cycles, "failure_probability": outputs.UNKNOWN, "over_yield": outputs.UNKNOWN}
-    body = outputs.object_of(outputs.properties(DAMAGE) | rest)
-    return outputs.object_of(
-        outputs.properties(HOW) | {"error": {"type": ["string", "null"]}, "bodies": outputs.list_of(body)}
-    )
-
-
 def lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]:
     """Return lines of text: how fatigue is assessed, then each body with its hot spot, the largest damage first.
 
@@ -195,20 +183,60 @@ def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
     return f"{name}: {', '.join(parts)}; {', '.join(cycles)}"
 
 
+class _Body(NamedTuple):
+    """The damage of a body, how it is assessed, and the bodies that yield."""
+
+    found: damage.SpectrumDamage
+    how: FatigueAssessment
+    over: Mapping[str, float]
+
+    @property
+    def cycles(self) -> list[damage.spectrum.SpectrumCycles]:
+        """The counted cycles that do the most damage, one by one."""
+        columns = (each[:MOST_LISTED].tolist() for each in self.found.cycles)
+        return list(map(damage.spectrum.SpectrumCycles._make, zip(*columns, strict=True)))
+
+
+OF_BODY = (
+    outputs.Output(
+        "cycles", "list",
+        words="counted cycles at the hot spot, the largest damage first; start and stop are load points",
+        parts=(
+            *outputs.numbers("start stop largest"), outputs.Output("times", "whole"),
+            *outputs.numbers("parameter damage"),
+        ),
+    ),
+    outputs.Output(
+        "failure_probability", of=lambda body: body.found.failure_probability(body.how.life), optional=True
+    ),
+    outputs.Output(
+        "over_yield", of=lambda body: body.over.get(owner_of(body.found.problem, body.found.body)), optional=True
+    ),
+)  # fmt: skip
+"""Further outputs of the damage of a body."""
+
+ANSWER = (*HOW, outputs.Output("error", "text", optional=True))
+"""Outputs of an assessment without its bodies."""
+
+
 def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
     """Return an assessment as a dict: angles in degrees, from the bottom of the hole for places, from +x for planes.
 
     `over` is that of :func:`lines`. A body without damage has no angle, depth, plane and life: all None.
     """
-    bodies = []
-    for one in assessed.found:
-        cycles = {name: getattr(one.cycles, name)[:MOST_LISTED].tolist() for name in one.cycles._fields}
-        rows = [dict(zip(cycles, row, strict=True)) for row in zip(*cycles.values(), strict=True)]
-        over_yield = over.get(owner_of(one.problem, one.body))
-        failing = one.failure_probability(assessed.how.life)
-        rest = {"failure_probability": None if math.isnan(failing) else failing, "over_yield": over_yield}
-        bodies.append(outputs.document(DAMAGE, one, units(one.problem)) | {"cycles": rows} | rest)
-    return outputs.document(HOW, assessed.how, {}) | {"error": assessed.reason or None, "bodies": bodies}
+    bodies = [
+        outputs.document(DAMAGE, one, units(one.problem))
+        | outputs.document(OF_BODY, _Body(one, assessed.how, over), {})
+        for one in assessed.found
+    ]
+    found = outputs.document(HOW, assessed.how, {})
+    return found | {"error": assessed.reason or None, "bodies": bodies}
+
+
+def schema() -> outputs.Schema:
+    """Return the JSON schema of :func:`document`."""
+    bodies = outputs.list_of(outputs.schema_of((*DAMAGE, *OF_BODY)))
+    return outputs.object_of(outputs.properties(ANSWER) | {"bodies": bodies})
 
 
 QUESTION = outputs.Question(

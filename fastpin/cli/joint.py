@@ -6,6 +6,7 @@ import argparse
 import sys
 
 from fastpin import figures, joints, report
+from fastpin.assess import outputs
 from fastpin.cli import terminal
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.errors import InputError
@@ -46,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
             (options.shares, lambda path: figures.plot_shares(result, path, case.title)),
         ],
         options.json,
-        lambda: report.joints.document(result, case.title),
+        lambda: outputs.whole_document(report.joints.JOINT, result, {}, title=case.title),
     )
     if options.json != "-":
         terminal.say(*filter(None, [case.title]), *report.joints.describe(result).split("\n"))

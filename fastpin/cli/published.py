@@ -7,12 +7,12 @@ import sys
 import time
 from typing import Any
 
-from fastpin.assess.outputs import json_ready
+from fastpin.assess.outputs import whole_document
 from fastpin.cli.progress import Bar
 from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, as_options, check_outputs, fail, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.published import catalog, records
-from fastpin.version import __version__
+from fastpin.report.schema import BENCHMARKS
 
 
 def run(options: argparse.Namespace) -> int:
@@ -29,18 +29,18 @@ def run(options: argparse.Namespace) -> int:
     elif options.format:
         raise InputError("--format", "has a meaning with -o only")
     check_outputs({"--json": options.json})
-    documents: dict[str, Any] = {}
+    found: dict[str, Any] = {}
     try:
         with Bar(len(names), "benchmark {desc}") as progress_bar:
             for name in names:
                 progress_bar.describe(name)
 
                 def progress(part: float) -> None:
-                    progress_bar.update(len(documents) + part - progress_bar.n)
+                    progress_bar.update(len(found) + part - progress_bar.n)
 
                 chosen = catalog.BENCHMARKS[name]
                 outcome = chosen.compute(progress)
-                documents[name] = records.document(outcome.rows)
+                found[name] = outcome.rows
                 if options.json != "-":
                     shown = records.table(chosen.title, chosen.statement, chosen.sources, outcome.rows)
                     progress_bar.write(*f"{name}: {shown}".split("\n"), "", file=sys.stdout)
@@ -49,10 +49,9 @@ def run(options: argparse.Namespace) -> int:
                     to = sys.stderr if options.json == "-" else sys.stdout
                     progress_bar.write(f"{name}: {', '.join(map(str, files))}", "", file=to)
     except KeyboardInterrupt:
-        finished = f"benchmarks that are finished: {', '.join(documents)}" if documents else "no benchmark was finished"
+        finished = f"benchmarks that are finished: {', '.join(found)}" if found else "no benchmark was finished"
         return fail(f"interrupted; {finished}", EXIT_INTERRUPTED)
-    document = {"fastpin": __version__, "benchmarks": documents}
-    return write_outputs([], options.json, lambda: json_ready(document))
+    return write_outputs([], options.json, lambda: whole_document(BENCHMARKS, found, {}))
 
 
 def paper(options: argparse.Namespace) -> int:

@@ -192,22 +192,6 @@ def row_curves(rows: Sequence[Row]) -> list[Curve]:
     ]
 
 
-def document(rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Return the rows as a list for JSON."""
-    return [
-        {
-            "quantity": row.quantity,
-            "unit": row.unit,
-            "published": row.published or None,
-            "fastpin": row.ours,
-            "difference": row.difference,
-            "agrees": row.agrees,
-            "verdict": row.verdict,
-        }
-        for row in rows
-    ]
-
-
 def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
     """Draw the figure of ``draw(curves)`` in the house style, and save it.
 

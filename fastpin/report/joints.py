@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fastpin.assess import outputs
-from fastpin.assess.outputs import Column, json_ready, table
-from fastpin.joints import JointResult, JointState
+from fastpin.assess.outputs import NUMBER, TEXT, WHOLE, Column, Output, list_of, map_of, table
+from fastpin.joints import JointPin, JointPlate, JointResult, JointState
 from fastpin.model import angles, ties
 from fastpin.model.units import scaled
 from fastpin.states.state import State
-from fastpin.version import __version__
 
 UNRESOLVED = " (not resolved)"
 """Words beside a value that the nodes do not resolve."""
@@ -113,79 +112,91 @@ def _column(name: str, values: list[float], unit: str) -> Column:
     return name, label, [f"{factor * value:.5g}" if abs(value) > 1e-9 * largest else "0" for value in values]
 
 
-def document(result: JointResult, title: str = "") -> dict[str, Any]:
-    """Return a result as a JSON-ready document, SI. Numbers that mean nothing are null."""
-    joint = result.joint
-    return dict(
-        json_ready(
-            {
-                "fastpin": __version__,
-                "title": title,
-                "units": {"force": "N", "stress": "Pa", "length": "m", "energy": "J", "angle": "rad"},
-                "nodes": result.nodes,
-                "harmonics": {plate.name: order for plate, order in zip(joint.plates, result.harmonics, strict=True)},
-                "snaps": result.snaps,
-                "seconds": result.seconds,
-                "largest": [contact_row(result, place) for place in range(len(joint.sections))] if len(result) else [],
-                "states": [_state_document(state) for state in result.states],
-            }
-        )
-    )
+class JointContact(NamedTuple):
+    """A pin in a plate at a load point: a place among the sections of a joint."""
+
+    state: JointState
+    place: int
+
+    @property
+    def pin(self) -> JointPin:
+        """The pin."""
+        return self.state.joint.sections[self.place][0]
+
+    @property
+    def plate(self) -> JointPlate:
+        """The plate."""
+        return self.state.joint.sections[self.place][1]
+
+    @property
+    def contact(self) -> State:
+        """The state of the contact."""
+        return self.state.contacts[self.place]
 
 
-def _state_document(state: JointState) -> dict[str, Any]:
-    joint = state.joint
-    contacts = []
-    for place, (pin, plate) in enumerate(joint.sections):
-        contact = state.contacts[place]
-        peak = contact.peak_hoop_stress("plate")
-        contacts.append(
-            {
-                "pin": pin.name,
-                "plate": plate.name,
-                "force": state.forces[place].tolist(),
-                "moment": float(state.moments[place]),
-                "share": state.shares(plate.name)[pin.name],
-                "peak_pressure": _pressure(contact),
-                "peak_hoop_stress": {"value": peak.value, "angle": peak.angle, "resolved": peak.resolved},
-                "dissipation": contact.dissipation * plate.thickness,
-                "slip": float(np.max(contact.slip_distance)),  # type: ignore[arg-type]
-            }
-        )
-    moved = {plate.name: by.tolist() for plate, by in zip(joint.plates, state.moved, strict=True)}
-    found = {"load_point": state.step + 1, "loads": state.load, "moved": moved, "contacts": contacts}
-    return found | {"residuals": state.residuals}
+CONTACT = (
+    Output("pin", "text", lambda at: at.pin.name),
+    Output("plate", "text", lambda at: at.plate.name),
+    Output("force", of=lambda at: at.state.forces[at.place], form=list_of(NUMBER, 2)),
+    Output("moment", of=lambda at: at.state.moments[at.place]),
+    Output("share", of=lambda at: at.state.shares(at.plate.name)[at.pin.name], optional=True),
+    Output("peak_pressure", of=lambda at: _pressure(at.contact)),
+    Output(
+        "peak_hoop_stress", of=lambda at: at.contact.peak_hoop_stress("plate"),
+        parts=(*outputs.numbers("value angle"), Output("resolved", "truth")),
+    ),
+    Output("dissipation", of=lambda at: at.contact.dissipation * at.plate.thickness),
+    Output("slip", of=lambda at: np.max(at.contact.slip_distance)),
+)  # fmt: skip
+"""Outputs of a :class:`JointContact`."""
 
+LARGEST = (
+    Output("pin", "text"),
+    Output("plate", "text"),
+    Output("touched", "whole", optional=True),
+    *outputs.numbers("force pressure hoop hoop_angle"),
+    Output("hoop_step", "whole"),
+    Output("resolved", "truth"),
+    *outputs.numbers("slip dissipation"),
+)
+"""Outputs of a :func:`contact_row`."""
 
-def schema() -> outputs.Schema:
-    """Return the JSON schema of :func:`document`."""
-    peak = outputs.object_of({"value": outputs.NUMBER, "angle": outputs.NUMBER, "resolved": outputs.TRUTH})
-    where = {"pin": outputs.TEXT, "plate": outputs.TEXT}
-    numbers = dict.fromkeys(("moment", "peak_pressure", "dissipation", "slip"), outputs.NUMBER)
-    contact = where | numbers | {"force": outputs.list_of(outputs.NUMBER, 2), "share": outputs.UNKNOWN}
-    largest = dict.fromkeys(("force", "pressure", "hoop", "hoop_angle", "slip", "dissipation"), outputs.NUMBER)
-    largest |= where | {
-        "touched": outputs.or_null(outputs.WHOLE),
-        "hoop_step": outputs.WHOLE,
-        "resolved": outputs.TRUTH,
-    }
-    state = {
-        "load_point": outputs.WHOLE,
-        "loads": outputs.map_of(outputs.NUMBER, "forces, N, and stresses, Pa"),
-        "moved": outputs.map_of(outputs.list_of(outputs.NUMBER, 3), "displacement along x, y, m, and rotation, rad"),
-        "contacts": outputs.list_of(outputs.object_of(contact | {"peak_hoop_stress": peak})),
-        "residuals": outputs.map_of(outputs.NUMBER, "violations of the conditions of contact and equilibrium"),
-    }
-    return outputs.object_of(
-        {
-            "fastpin": outputs.TEXT,
-            "title": outputs.TEXT,
-            "units": outputs.map_of(outputs.TEXT, "unit of each kind of quantity"),
-            "nodes": outputs.WHOLE,
-            "harmonics": outputs.map_of(outputs.WHOLE, "highest harmonic of the holes of each plate"),
-            "snaps": outputs.WHOLE,
-            "seconds": outputs.NUMBER,
-            "largest": outputs.list_of(outputs.object_of(largest)),
-            "states": outputs.list_of(outputs.object_of(state)),
-        }
-    )
+JOINT_STATE = (
+    Output("load_point", "whole", lambda state: state.step + 1),
+    Output("loads", of=lambda state: state.load, form=map_of(NUMBER, "forces, N, and stresses, Pa")),
+    Output(
+        "moved", form=map_of(list_of(NUMBER, 3), "displacement along x, y, m, and rotation, rad"),
+        of=lambda state: {
+            plate.name: by.tolist() for plate, by in zip(state.joint.plates, state.moved, strict=True)
+        },
+    ),
+    Output(
+        "contacts", "list", lambda state: [JointContact(state, place) for place in range(len(state.contacts))],
+        parts=CONTACT,
+    ),
+    Output("residuals", form=map_of(NUMBER, "violations of the conditions of contact and equilibrium")),
+)  # fmt: skip
+"""Outputs of a state of a joint."""
+
+JOINT = (
+    Output(
+        "units", form=map_of(TEXT, "unit of each kind of quantity"),
+        of=lambda result: {"force": "N", "stress": "Pa", "length": "m", "energy": "J", "angle": "rad"},
+    ),
+    Output("nodes", "whole"),
+    Output(
+        "harmonics", form=map_of(WHOLE, "highest harmonic of the holes of each plate"),
+        of=lambda result: {
+            plate.name: order for plate, order in zip(result.joint.plates, result.harmonics, strict=True)
+        },
+    ),
+    Output("snaps", "whole"),
+    Output("seconds"),
+    Output(
+        "largest", "list",
+        lambda result: [contact_row(result, place) for place in range(len(result.joint.sections) * bool(len(result)))],
+        parts=LARGEST,
+    ),
+    Output("states", "list", parts=JOINT_STATE),
+)  # fmt: skip
+"""Outputs of the result of a joint, SI."""

@@ -8,20 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from fastpin.assess import crack, wear
-from fastpin.assess.outputs import (
-    NUMBER,
-    TEXT,
-    UNKNOWN,
-    WHOLE,
-    Output,
-    Schema,
-    list_of,
-    map_of,
-    object_of,
-    of_fields,
-    whole_schema,
-)  # fmt: skip
+from fastpin.assess import crack, outputs, wear
+from fastpin.assess.outputs import Output
 from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.model.checks import choice
 from fastpin.report import charts, convergence, identify, joints, summary, tolerances
@@ -29,7 +17,7 @@ from fastpin.verification.rows import Check
 from fastpin.version import __version__
 
 
-def json_schema(command: str) -> Schema:
+def json_schema(command: str) -> outputs.Schema:
     """Return the JSON schema of the document that a command writes.
 
     Parameters
@@ -44,67 +32,77 @@ def json_schema(command: str) -> Schema:
     InputError
         If there is no such document.
     """
-    document = _DOCUMENTS[choice("command", command, COMMANDS)]()
+    schema = _DOCUMENTS[choice("command", command, COMMANDS)]()
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": f"JSON of fastpin {command}, version {__version__}",
-        **document,
+        **schema,
     }
 
 
 CHECKS = (
-    Output("versions", form=map_of(TEXT, "version of each library")),
+    Output("versions", form=outputs.map_of(outputs.TEXT, "version of each library")),
     Output("cores", "whole"),
     Output("seconds"),
     Output("passed", "truth"),
-    Output("checks", "list", parts=(*of_fields(Check), Output("passed", "truth"))),
+    Output("checks", "list", parts=(*outputs.of_fields(Check), Output("passed", "truth"))),
 )
 """Outputs of the checks of an installation."""
 
 
-def _benchmarks() -> Schema:
-    row = object_of(
-        {
-            "quantity": TEXT,
-            "unit": TEXT,
-            "published": {"type": ["string", "null"]} | {"description": "the number as its source prints it"},
-            "fastpin": UNKNOWN,
-            "difference": UNKNOWN,
-            "agrees": {"type": ["boolean", "null"]},
-            "verdict": TEXT,
-        }
-    )
-    return object_of({"fastpin": TEXT, "benchmarks": map_of(list_of(row), "rows of each benchmark")})
+BENCHMARK_ROW = (
+    Output("quantity", "text"),
+    Output("unit", "text"),
+    Output(
+        "published", of=lambda row: row.published or None,
+        form={"type": ["string", "null"], "description": "the number as its source prints it"},
+    ),
+    Output("fastpin", of=lambda row: row.ours, optional=True),
+    Output("difference", optional=True),
+    Output("agrees", "truth", optional=True),
+    Output("verdict", "text"),
+)  # fmt: skip
+"""Outputs of a row of a benchmark."""
+
+BENCHMARKS = (
+    Output(
+        "benchmarks", form=outputs.map_of(outputs.list_of(outputs.schema_of(BENCHMARK_ROW)), "rows of each benchmark"),
+        of=lambda found: {
+            name: [outputs.document(BENCHMARK_ROW, row, {}) for row in rows] for name, rows in found.items()
+        },
+    ),
+)  # fmt: skip
+"""Outputs of the rows of some benchmarks, by their names."""
 
 
-def _compliance() -> Schema:
-    return object_of(
+def _compliance() -> outputs.Schema:
+    return outputs.object_of(
         {
             "format": {"const": FORMAT},
             "version": {"const": VERSION},
-            "nu": NUMBER,
+            "nu": outputs.NUMBER,
             "plane": {"enum": ["strain", "stress"]},
-            "hole_radius": NUMBER,
-            "order": WHOLE,
-            "matrix": list_of(list_of(NUMBER)),
-            "columns": map_of(list_of(NUMBER), "response to each remote stress"),
-            "made_by": TEXT,
+            "hole_radius": outputs.NUMBER,
+            "order": outputs.WHOLE,
+            "matrix": outputs.list_of(outputs.list_of(outputs.NUMBER)),
+            "columns": outputs.map_of(outputs.list_of(outputs.NUMBER), "response to each remote stress"),
+            "made_by": outputs.TEXT,
         }
     )
 
 
-_DOCUMENTS: dict[str, Callable[[], Schema]] = {
-    "run": partial(whole_schema, summary.RUN),
-    "converge": partial(whole_schema, convergence.CONVERGENCE),
-    "verify": partial(whole_schema, CHECKS, has_title=False),
-    "benchmarks": _benchmarks,
+_DOCUMENTS: dict[str, Callable[[], outputs.Schema]] = {
+    "run": partial(outputs.whole_schema, summary.RUN),
+    "converge": partial(outputs.whole_schema, convergence.CONVERGENCE),
+    "verify": partial(outputs.whole_schema, CHECKS, has_title=False),
+    "benchmarks": partial(outputs.whole_schema, BENCHMARKS, has_title=False),
     "compliance": _compliance,
-    "wear": partial(whole_schema, (Output("error", "text", optional=True), *wear.LIFE)),
-    "tolerances": tolerances.schema,
-    "crack": partial(whole_schema, crack.DOCUMENT),
-    "charts": partial(whole_schema, charts.LOOKED, has_title=False),
-    "identify": partial(whole_schema, identify.IDENTIFIED),
-    "joint": joints.schema,
+    "wear": partial(outputs.whole_schema, (Output("error", "text", optional=True), *wear.LIFE)),
+    "tolerances": partial(outputs.whole_schema, tolerances.TOLERANCES),
+    "crack": partial(outputs.whole_schema, crack.DOCUMENT),
+    "charts": partial(outputs.whole_schema, charts.LOOKED, has_title=False),
+    "identify": partial(outputs.whole_schema, identify.IDENTIFIED),
+    "joint": partial(outputs.whole_schema, joints.JOINT),
 }
 
 COMMANDS = tuple(_DOCUMENTS)

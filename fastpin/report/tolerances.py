@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.assess import outputs
-from fastpin.assess.outputs import Column, table
+from fastpin.assess.outputs import NUMBER, UNKNOWN, Column, Output, list_of, map_of, table
 from fastpin.errors import InputError
 from fastpin.model import checks, synonyms
 from fastpin.model.units import scaled
@@ -19,7 +19,6 @@ from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.run_end import bar_column
 from fastpin.studies.tolerances import OutcomeEffect, Reached, Tolerances, effects_of, part_words
 from fastpin.studies.variation import field_kind, field_words
-from fastpin.version import __version__
 
 MOST_OUTCOMES = 4
 """Most outcomes of a figure."""
@@ -261,87 +260,100 @@ def _named(span: Sequence[Reached]) -> list[tuple[str, Reached]]:
     return list(zip(("smallest", "largest"), span, strict=True))
 
 
-def document(study: Tolerances, rows: Sequence[TableRow]) -> dict[str, Any]:
-    """Return the effects on all outcomes as a JSON-ready dict. NaN is None; outcomes have their printed units."""
-    plan, (found, unit) = study.plan, printed_rows(study.plan, rows)
+@dataclass(frozen=True, eq=False)
+class _Effects:
+    """A study with the rows of its points, in printed units, and the names of these."""
 
-    def reached(point: Reached) -> dict[str, Any]:
-        return {"value": point.value, "part": part_words(study, point.place), "values": plan.points[point.place].values}
+    study: Tolerances
+    rows: Sequence[TableRow]
+    unit: dict[str, str]
 
-    def span(ends: Sequence[Reached] | None) -> dict[str, Any] | None:
-        return None if ends is None else {end: reached(point) for end, point in _named(ends)}
+    def point(self, place: int) -> dict[str, Any]:
+        """The part of the study and the fields of a point."""
+        return {"part": part_words(self.study, place), "values": self.study.plan.points[place].values}
 
-    outcomes = {}
-    for name, effect in effects_of(study, found).items():
-        fields = {
-            field: {
-                "values": list(study.limits[field].values),
-                "outcomes": [_or_none(value) for value in effect.alone[field]],
-                "swing": _or_none(swing),
-                "rank_correlation": _or_none(effect.correlations.get(field, math.nan)),
-            }
-            for field, swing in effect.swings.items()
-        }
-        outcomes[name] = {
-            "unit": unit_name(plan, name, unit),
-            "nominal": _or_none(effect.nominal),
-            "fields": fields,
-            "corners": span(effect.corners),
-            "all": span(effect.everywhere),
-            "percentiles": {str(percent): value for percent, value in effect.percentiles.items()},
-            "unresolved": _unresolved(found, name),
-        }
-    failed = [(place, row) for place, row in enumerate(found) if row["status"] == FAILED]
+    def count(self, status: str) -> int:
+        """The number of points with a status."""
+        return sum(row["status"] == status for row in self.rows)
+
+    def span(self, ends: Sequence[Reached] | None) -> dict[str, Any] | None:
+        """The extremes of some runs, with their points."""
+        if ends is None:
+            return None
+        return {end: {"value": reached.value, **self.point(reached.place)} for end, reached in _named(ends)}
+
+    @property
+    def outcomes(self) -> dict[str, tuple[_Effects, str, OutcomeEffect]]:
+        """The effects on each outcome."""
+        return {name: (self, name, effect) for name, effect in effects_of(self.study, self.rows).items()}
+
+
+def _of_fields(found: tuple[_Effects, str, OutcomeEffect]) -> dict[str, dict[str, Any]]:
+    """Return the effect of each field on an outcome, the largest swing first."""
+    whole, _, effect = found
     return {
-        "fastpin": __version__,
-        "title": plan.title,
-        "points": len(found),
-        "done": sum(row["status"] == DONE for row in found),
-        "corners": len(study.corners),
-        "samples": len(study.samples),
-        "failed": [
-            {"part": part_words(study, place), "values": plan.points[place].values, "reason": row["reason"] or ""}
-            for place, row in failed
-        ],
-        "fields": {
-            field: {"nominal": each.nominal, "from": each.low, "to": each.high, "spacing": each.spacing}
-            for field, each in study.limits.items()
-        },
-        "outcomes": outcomes,
+        field: {
+            "values": whole.study.limits[field].values,
+            "outcomes": effect.alone[field],
+            "swing": swing,
+            "rank_correlation": effect.correlations.get(field, math.nan),
+        }
+        for field, swing in effect.swings.items()
     }
 
 
-def schema() -> outputs.Schema:
-    """Return the JSON schema of :func:`document`."""
-    values = outputs.map_of(outputs.NUMBER, "the fields")
-    reached = outputs.object_of({"value": outputs.NUMBER, "part": outputs.TEXT, "values": values})
-    span = outputs.or_null(outputs.object_of({"smallest": reached, "largest": reached}))
-    alone = {"values": outputs.list_of(outputs.NUMBER), "outcomes": outputs.list_of(outputs.UNKNOWN)}
-    field = outputs.object_of(alone | dict.fromkeys(("swing", "rank_correlation"), outputs.UNKNOWN))
-    outcome = outputs.object_of(
-        {
-            "unit": outputs.TEXT,
-            "nominal": outputs.UNKNOWN,
-            "fields": outputs.map_of(field, "the effect of each field, the largest swing first"),
-            "corners": span,
-            "all": span,
-            "percentiles": outputs.map_of(outputs.NUMBER, "percentiles of the samples"),
-            "unresolved": outputs.WHOLE | {"description": "number of runs whose value the nodes do not resolve"},
-        }
-    )
-    spacing = {"spacing": {"enum": ["linear", "log"]}}
-    limits = outputs.object_of(dict.fromkeys(("nominal", "from", "to"), outputs.NUMBER) | spacing)
-    failed = outputs.object_of({"part": outputs.TEXT, "values": values, "reason": outputs.TEXT})
-    return outputs.object_of(
-        {
-            "fastpin": outputs.TEXT,
-            "title": outputs.TEXT,
-            **dict.fromkeys(("points", "done", "corners", "samples"), outputs.WHOLE),
-            "failed": outputs.list_of(failed),
-            "fields": outputs.map_of(limits, "the limits of each field, in the units of the case file"),
-            "outcomes": outputs.map_of(outcome, "the effects on each outcome"),
-        }
-    )
+_POINT = (Output("part", "text"), Output("values", form=map_of(NUMBER, "the fields")))
+
+_SPAN = [Output(end, parts=(Output("value"), *_POINT)) for end in ("smallest", "largest")]
+
+OUTCOME = (
+    Output("unit", "text", lambda found: unit_name(found[0].study.plan, found[1], found[0].unit)),
+    Output("nominal", of=lambda found: found[2].nominal, optional=True),
+    Output(
+        "fields", "map", _of_fields, "the effect of each field, the largest swing first",
+        parts=(
+            Output("values", form=list_of(NUMBER)), Output("outcomes", form=list_of(UNKNOWN)),
+            *outputs.numbers("swing rank_correlation", optional=True),
+        ),
+    ),
+    Output("corners", of=lambda found: found[0].span(found[2].corners), parts=_SPAN, optional=True),
+    Output("all", of=lambda found: found[0].span(found[2].everywhere), parts=_SPAN, optional=True),
+    Output("percentiles", of=lambda found: found[2].percentiles, form=map_of(NUMBER, "percentiles of the samples")),
+    Output(
+        "unresolved", "whole", lambda found: _unresolved(found[0].rows, found[1]),
+        "number of runs whose value the nodes do not resolve",
+    ),
+)  # fmt: skip
+"""Outputs of the effects on an outcome."""
+
+TOLERANCES = (
+    Output("points", "whole", lambda found: len(found.rows)),
+    Output("done", "whole", lambda found: found.count(DONE)),
+    Output("corners", "whole", lambda found: len(found.study.corners)),
+    Output("samples", "whole", lambda found: len(found.study.samples)),
+    Output(
+        "failed", "list", parts=(*_POINT, Output("reason", "text")),
+        of=lambda found: [
+            found.point(place) | {"reason": row["reason"] or ""}
+            for place, row in enumerate(found.rows) if row["status"] == FAILED
+        ],
+    ),
+    Output(
+        "fields", "map", lambda found: found.study.limits, "the limits of each field, in the units of the case file",
+        parts=(
+            Output("nominal"), Output("from", of=lambda each: each.low), Output("to", of=lambda each: each.high),
+            Output("spacing", "text", allowed=("linear", "log")),
+        ),
+    ),
+    Output("outcomes", "map", words="the effects on each outcome", parts=OUTCOME),
+)  # fmt: skip
+"""Outputs of a tolerance study."""
+
+
+def document(study: Tolerances, rows: Sequence[TableRow]) -> dict[str, Any]:
+    """Return the effects on all outcomes as a JSON-ready dict. NaN is None; outcomes have their printed units."""
+    plan, found = study.plan, _Effects(study, *printed_rows(study.plan, rows))
+    return outputs.whole_document(TOLERANCES, found, {}, title=plan.title)
 
 
 def _known(row: TableRow, name: str) -> float:
@@ -358,7 +370,3 @@ def _unresolved(rows: Sequence[TableRow], name: str) -> int:
 def _field_unit(study: Tolerances, field: str, unit: dict[str, str]) -> tuple[float, str]:
     """Return the factor and the label of the unit that suits the limits of a field."""
     return scaled([study.limits[field].low, study.limits[field].high], unit.get(field_kind(field), ""))
-
-
-def _or_none(value: float) -> float | None:
-    return value if math.isfinite(value) else None

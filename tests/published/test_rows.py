@@ -4,8 +4,10 @@ import math
 
 import pytest
 
+from fastpin.assess.outputs import document
 from fastpin.published import records
 from fastpin.published.records import AGREES, Row
+from fastpin.report.schema import BENCHMARK_ROW
 
 
 @pytest.mark.parametrize(
@@ -53,7 +55,7 @@ def test_rows_become_lines_of_a_csv_file_and_of_json() -> None:
     assert one.parameters == {"quantity": "q", "unit": "bar", "published": "178.13", "verdict": "differs"}
     assert one["difference"][0] == pytest.approx(-0.13)
     assert math.isnan(two["difference"][0])
-    assert records.document(rows)[1] == {
+    assert document(BENCHMARK_ROW, rows[1], {}) == {
         "quantity": "r", "unit": "", "published": None, "fastpin": 2.0, "difference": None, "agrees": False,
         "verdict": "comparison only",
     }  # fmt: skip
