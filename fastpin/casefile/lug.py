@@ -11,13 +11,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from fastpin.bodies.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER
-from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
+from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.lugs.outline import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
 from fastpin.model.checks import as_toml, choice, file_path, number, positive, string, whole_number
 from fastpin.model.materials import MATERIALS, PLANES
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
-from fastpin.model.synonyms import closest
 
 LUG_EXAMPLE = Path(__file__).with_name("lug.toml").read_text(encoding="utf-8")
 """A commented lug file: a lug with a round end."""
@@ -77,7 +76,7 @@ def parse_lug(text: str, name: str = "lug file") -> LugFile:
 
 
 def _lug_file(source: CaseText) -> LugFile | None:
-    _check_keys(source)
+    source.check_sections(LUG_KEYS, BLOCKS)
     title = source.root.checked("title", string) or ""
     plate = source.section("plate", required=True)
     nu, plane = _poisson_ratio(plate), plate.choice("plane", PLANES)
@@ -102,27 +101,6 @@ def _lug_file(source: CaseText) -> LugFile | None:
         source.report(str(error), section, *key)
         return None
     return LugFile(lug, title, harmonics)
-
-
-def _in_brackets(section: str) -> str:
-    return f"[[{section}]]" if section in BLOCKS else f"[{section}]"
-
-
-def _check_keys(source: CaseText) -> None:
-    """Report unknown sections and keys."""
-    for name, value in source.root.table.items():
-        if name == "title":
-            continue
-        shown = _in_brackets(name)
-        are_tables = isinstance(value, list) and all(isinstance(table, dict) for table in value)
-        if name not in LUG_KEYS:
-            hint = closest(name, tuple(LUG_KEYS)) or f"; the sections are {', '.join(map(_in_brackets, LUG_KEYS))}"
-            source.report_unknown(name, hint)
-        elif not (isinstance(value, dict) or (name in BLOCKS and are_tables)):
-            source.report(f"{name}: must be a section {shown}, not {written(name, value) or as_toml(value)}", name)
-        else:
-            for block in source.blocks(name):
-                block.check_keys(LUG_KEYS[name], f" in {shown}")
 
 
 def _poisson_ratio(plate: Section) -> float | None:

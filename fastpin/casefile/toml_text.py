@@ -201,6 +201,32 @@ class CaseText:
         section = written(name, self.root.table[name])
         self.report(f"unknown section {section}{hint}" if section else f'unknown key "{name}"{where}{hint}', name)
 
+    def check_sections(self, keys: Mapping[str, Collection[str]], blocks: Collection[str]) -> None:
+        """Report unknown sections and keys of a file with a title.
+
+        Parameters
+        ----------
+        keys : mapping of str
+            The keys of each section; empty if they are checked later.
+        blocks : collection of str
+            Sections that may appear several times.
+        """
+        shown = {name: f"[[{name}]]" if name in blocks else f"[{name}]" for name in keys}
+        for name, value in self.root.table.items():
+            are_tables = name in blocks and isinstance(value, list) and all(isinstance(each, dict) for each in value)
+            if name == "title":
+                continue
+            if name not in keys:
+                self.report_unknown(
+                    name, closest(name, tuple(keys)) or f"; the sections are {', '.join(shown.values())}"
+                )
+            elif not isinstance(value, dict) and not are_tables:
+                given = written(name, value) or as_toml(value)
+                self.report(f"{name}: must be a section {shown[name]}, not {given}", name)
+            elif keys[name]:
+                for block in self.blocks(name):
+                    block.check_keys(keys[name], f" in {shown[name]}")
+
     def line(self, *place: str | int) -> int:
         """Line (from 1) of the value at `place`, or of the smallest table around it; 0 if neither is in the text."""
         places = self._lines.located[0]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from fastpin import figures, report, studies
 from fastpin.cli import terminal
@@ -17,6 +17,8 @@ from fastpin.cli.options import literal
 from fastpin.cli.progress import READ_POINTS, Bar, progress_to
 from fastpin.errors import InputError
 from fastpin.figures.kinds import DEFAULT_KEY_FIGURE
+
+T = TypeVar("T")
 
 MOST_REASONS = 20
 """Most failed runs that are listed with their reasons."""
@@ -28,47 +30,65 @@ CLUSTER_SECONDS = 30
 def run(options: argparse.Namespace) -> int:
     """Run all cases of a plan that are not finished, then write tables and figures."""
     shard = _shard(options.shard)
-    check_combination(options)
+    _check_combination(options)
     for name in ("value", "x", "y", "where", "envelope"):
         if getattr(options, name) is not None and options.plot is None:
             raise InputError(f"--{name}", "says what a figure shows; --plot FILE is missing")
-    with Bar(1, READ_POINTS) as progress_bar:
-        plan = studies.read_plan(options.plan, progress_to(progress_bar))
-    if options.outcomes is not None:
-        plan = plan.with_outcomes(studies.read_outcomes(options.outcomes))
-    directory = Path(options.plan.stem) if options.output is None else options.output
+    plan = _read(options, studies.read_plan)
     _check_outputs(options, plan)
-    if options.status:
-        summary = studies.sweep.status(plan, directory, shard)
-    else:
-        try:
-            summary = run_plan(options, plan, directory, shard)
-        except KeyboardInterrupt:
-            return fail_interrupted(plan, directory, shard)
-    rows = _written(options, plan, directory)
-    print_summary(plan, directory, summary, options.status, options.retry)
+    directory = _directory(options)
+    summary = _followed(options, plan, directory, shard)
+    if summary is None:
+        return terminal.EXIT_INTERRUPTED
+    rows = [] if options.table is None and options.plot is None else studies.sweep.rows(plan, directory)
+    if options.table not in (None, "-"):
+        report.sweep.write_csv(plan, rows, Path(options.table))
+    if options.plot is not None:
+        _draw(options, plan, rows)
+    _print_summary(options, plan, directory, summary)
     if options.table == "-":
         terminal.say(*report.sweep.text(plan, rows).split("\n"))
+    return _exit_code(options, summary)
+
+
+def _read(options: argparse.Namespace, read: Callable[..., T]) -> T:
+    """Read a plan with a progress bar, with the outcomes of ``--outcomes``."""
+    with Bar(1, READ_POINTS) as progress_bar:
+        plan: Any = read(options.plan, progress_to(progress_bar))
+    found: T = plan if options.outcomes is None else plan.with_outcomes(studies.read_outcomes(options.outcomes))
+    return found
+
+
+def _directory(options: argparse.Namespace) -> Path:
+    """Return the directory of index and results."""
+    return Path(options.plan.stem) if options.output is None else options.output
+
+
+def _followed(
+    options: argparse.Namespace, plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None = None
+) -> studies.sweep.Summary | None:
+    """Solve the runs of a plan with a progress bar, unless only the progress is asked for; return the progress.
+
+    After Ctrl-C print how many runs are kept, and return None.
+    """
+    if options.status:
+        return studies.sweep.status(plan, directory, shard)
+    try:
+        with _executor(options.dask) as executor, Bar(len(plan.points), "run {n} of {total}") as progress_bar:
+            progress = progress_to(progress_bar)
+            with terminal.as_options(["workers"]):
+                return studies.sweep.run(
+                    plan, directory, executor, options.workers, options.retry, shard, progress, options.files
+                )
+    except KeyboardInterrupt:
+        now = studies.sweep.status(plan, directory, shard)
+        kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command continues"
+        terminal.fail(f"interrupted; {kept}", terminal.EXIT_INTERRUPTED)
+        return None
+
+
+def _exit_code(options: argparse.Namespace, summary: studies.sweep.Summary) -> int:
     return terminal.EXIT_FAILED if (summary.failed or summary.unread) and not options.status else terminal.EXIT_OK
-
-
-def run_plan(
-    options: argparse.Namespace, plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None
-) -> studies.sweep.Summary:
-    """Solve the runs of a plan with a progress bar."""
-    with _executor(options.dask) as executor, Bar(len(plan.points), "run {n} of {total}") as progress_bar:
-        progress = progress_to(progress_bar)
-        with terminal.as_options(["workers"]):
-            return studies.sweep.run(
-                plan, directory, executor, options.workers, options.retry, shard, progress, options.files
-            )
-
-
-def fail_interrupted(plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None) -> int:
-    """Print how many runs are kept, and return the exit code."""
-    now = studies.sweep.status(plan, directory, shard)
-    kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command continues"
-    return terminal.fail(f"interrupted; {kept}", terminal.EXIT_INTERRUPTED)
 
 
 @contextmanager
@@ -98,7 +118,7 @@ def _shard(text: str | None) -> tuple[int, int] | None:
     return int(parts[1]), int(parts[2])
 
 
-def check_combination(options: argparse.Namespace) -> None:
+def _check_combination(options: argparse.Namespace) -> None:
     """Refuse options that would have no effect."""
     if options.workers is not None and options.dask is not None:
         raise InputError("--workers", "is for processes of this machine; the scheduler has its own workers")
@@ -145,14 +165,14 @@ def _values(options: argparse.Namespace, plan: studies.plan.Plan) -> list[str]:
     return [name.strip() for name in given.split(",")]
 
 
-def print_summary(
-    plan: studies.plan.Plan, directory: Path, summary: studies.sweep.Summary, only_status: bool, retried: bool
+def _print_summary(
+    options: argparse.Namespace, plan: studies.plan.Plan, directory: Path, summary: studies.sweep.Summary
 ) -> None:
     """Print the progress of a plan, and its failed runs with their reasons."""
     if plan.title:
         terminal.say(plan.title)
     counts = f"{summary.done} done, {len(summary.failed)} failed, {summary.waiting} waiting"
-    time = "" if only_status else f"; {summary.ended} in {summary.seconds:.1f} s"
+    time = "" if options.status else f"; {summary.ended} in {summary.seconds:.1f} s"
     terminal.say(f"{summary.total} runs in {directory}: {counts}{time}")
     same = len(plan.points) - len(plan.runs)
     if same:
@@ -168,26 +188,15 @@ def print_summary(
         if unread:
             point, reason = unread[0]
             terminal.say(f"outcome {name} can't be read in {len(unread)} runs, first {point.id}: {reason}")
-    if summary.failed and not retried:
+    if summary.failed and not options.retry:
         terminal.say("--retry runs what failed again")
 
 
-def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path) -> list[dict[str, Any]]:
-    """Write the table and the figure. Return the rows of the plan; none if no table or figure is wanted."""
-    if options.table is None and options.plot is None:
-        return []
-    rows = studies.sweep.rows(plan, directory)
-    if options.table not in (None, "-"):
-        report.sweep.write_csv(plan, rows, Path(options.table))
-    if options.plot is not None:
-        _draw(options, plan, directory)
-    return rows
-
-
-def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path) -> None:
-    """Draw the figure of a plan, or of the points with the values of ``--where``."""
-    values, where, plan = _values(options, plan), _where(options), _shown(options, plan)
-    rows = studies.sweep.rows(plan, directory)
+def _draw(options: argparse.Namespace, whole: studies.plan.Plan, rows: list[dict[str, Any]]) -> None:
+    """Draw the figure of a plan with its rows, or of the points with the values of ``--where``."""
+    values, where, plan = _values(options, whole), _where(options), _shown(options, whole)
+    shown = set(map(id, plan.points))
+    rows = [row for point, row in zip(whole.points, rows, strict=True) if id(point) in shown]
     fixed = [figures.style.shown_label(words) for words in report.sweep.where_words(plan, rows, where)]
     title = ", ".join(filter(None, [plan.title, *fixed]))
     if options.envelope:
@@ -215,33 +224,30 @@ def merge(options: argparse.Namespace) -> int:
 
 def tolerances(options: argparse.Namespace) -> int:
     """Run all points of a tolerance plan that are not finished, then write tables and figures."""
-    check_combination(options)
+    _check_combination(options)
     if options.value is not None and options.plot is None and options.scatter is None:
         raise InputError("--value", "says what a figure shows; --plot FILE or --scatter FILE is missing")
-    with Bar(1, READ_POINTS) as progress_bar:
-        study = studies.read_tolerances(options.plan, progress_to(progress_bar))
-    if options.outcomes is not None:
-        study = study.with_outcomes(studies.read_outcomes(options.outcomes))
-    directory = Path(options.plan.stem) if options.output is None else options.output
-    shown = _check_figures(options, study)
-    if options.status:
-        summary = studies.sweep.status(study.plan, directory)
-    else:
-        try:
-            summary = run_plan(options, study.plan, directory, None)
-        except KeyboardInterrupt:
-            return fail_interrupted(study.plan, directory, None)
-    code = _write_effects(options, study, directory, shown)
-    if options.json == "-":
-        return code or _exit_code(options, summary)
-    print_summary(study.plan, directory, summary, options.status, options.retry)
-    if summary.done:
-        terminal.say("", *report.tolerances.text(study, studies.sweep.rows(study.plan, directory)).split("\n"))
+    study = _read(options, studies.read_tolerances)
+    plan, directory, shown = study.plan, _directory(options), _check_figures(options, study)
+    summary = _followed(options, plan, directory)
+    if summary is None:
+        return terminal.EXIT_INTERRUPTED
+    rows = studies.sweep.rows(plan, directory)
+    charts = [
+        report.tolerances.tolerance_chart(study, rows, name)
+        for name in (shown if options.plot or options.scatter else ())
+    ]
+    files = [
+        (options.table, lambda path: report.sweep.write_csv(plan, rows, path)),
+        (options.plot, lambda path: figures.plot_tornado(charts, path)),
+        (options.scatter, lambda path: figures.plot_samples(charts, path)),
+    ]
+    code = terminal.write_outputs(files, options.json, lambda: report.tolerances.document(study, rows))
+    if options.json != "-":
+        _print_summary(options, plan, directory, summary)
+        if summary.done:
+            terminal.say("", *report.tolerances.text(study, rows).split("\n"))
     return code or _exit_code(options, summary)
-
-
-def _exit_code(options: argparse.Namespace, summary: studies.sweep.Summary) -> int:
-    return terminal.EXIT_FAILED if (summary.failed or summary.unread) and not options.status else terminal.EXIT_OK
 
 
 def _check_figures(options: argparse.Namespace, study: studies.tolerances.Tolerances) -> list[str]:
@@ -256,20 +262,3 @@ def _check_figures(options: argparse.Namespace, study: studies.tolerances.Tolera
     with terminal.as_options():
         report.tolerances.check_outcomes(study, shown)
     return shown
-
-
-def _write_effects(
-    options: argparse.Namespace, study: studies.tolerances.Tolerances, directory: Path, shown: list[str]
-) -> int:
-    """Write the files that are asked for, and return the exit code."""
-    outputs = (options.table, options.json, options.plot, options.scatter)
-    if all(each is None for each in outputs):
-        return terminal.EXIT_OK
-    rows = studies.sweep.rows(study.plan, directory)
-    charts = [report.tolerances.tolerance_chart(study, rows, name) for name in shown]
-    files = [
-        (options.table, lambda path: report.sweep.write_csv(study.plan, rows, path)),
-        (options.plot, lambda path: figures.plot_tornado(charts, path)),
-        (options.scatter, lambda path: figures.plot_samples(charts, path)),
-    ]
-    return terminal.write_outputs(files, options.json, lambda: report.tolerances.document(study, rows))

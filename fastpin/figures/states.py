@@ -439,16 +439,17 @@ class InMemory:
         """Return the result."""
         return self.result()
 
-    def beside(self, name: str) -> None:
+    def beside(self, name: str) -> Any:
         """Return None: a result in memory does not know the sections of its case, such as [fatigue]."""
+        return None
 
     def wear(self) -> WearResult:
         """Return the life of wear."""
         return checks.instance("result", self._life, WearResult, "a WearResult")
 
 
-class InFile:
-    """The stored result of a run. Only the states that a figure shows are read.
+class InFile(InMemory):
+    """The stored result of a run. Only the states that a figure shows are read: its ``result()`` has none.
 
     Attributes
     ----------
@@ -456,23 +457,13 @@ class InFile:
         ``progress(done, total)`` follows figures that take long to compute.
     """
 
-    source = "result"
-
     def __init__(self, path: Path, progress: Callable[[float, float], None] | None = None) -> None:
         self._path, self._held, self.progress = path, HeldInFile(path), progress
-
-    @property
-    def cycles(self) -> Sequence[Cycle]:
-        """The cycles of the history."""
-        return self._held.result.cycles
+        super().__init__(self._held.result)
 
     def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
         """Return the states of a figure, see :func:`fastpin.figures.states.held_states`."""
         return held_states(self._held, states, **how)
-
-    def result(self) -> Result:
-        """Return the result without its states."""
-        return self._held.result
 
     def part(self, first: int, last: int) -> Result:
         """Return the result with the states from one corner to another only."""
@@ -498,7 +489,7 @@ def problem_of(joint: Problem | Case | Result) -> Problem:
     return joint if isinstance(joint, Problem) else joint.problem
 
 
-Subject = InMemory | InFile
+Subject = InMemory
 """A result, or states, of which figures are made. States alone have no result."""
 
 

@@ -12,14 +12,13 @@ from typing import Any, NamedTuple
 
 from fastpin.casefile.lug import limits_of, point_of
 from fastpin.casefile.materials import read_material
-from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
+from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.joints.parts import Joint, JointPin, JointPlate, tate_rosenfeld
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
 from fastpin.lugs.outline import Part, rectangle
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
-from fastpin.model.synonyms import closest
 
 JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8")
 """A commented joint file: a single lap of three bolts."""
@@ -28,6 +27,7 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "joint": ("plane", "nodes", "harmonics", "repeat"),
     "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves"),
     "pin": ("name", "at", *MATERIAL_KEYS, "diameter", "plates", "clearance", "friction", "flexibility"),
+    "load": (),
 }
 """Sections of a joint file and their keys. The keys of [[load]] are the loads of the joint."""
 
@@ -79,7 +79,7 @@ def parse_joint(text: str, name: str = "joint file") -> JointFile:
 
 
 def _joint_file(source: CaseText) -> JointFile | None:
-    _check_keys(source)
+    source.check_sections(_KEYS, ("plate", "pin", "load"))
     title, settings = source.root.checked("title", string) or "", source.section("joint")
     plane = settings.choice("plane", ("stress", *(word for word in PLANES if word != "stress")))
     nodes = settings.checked("nodes", whole_number, LEAST_NODES, MOST_NODES) or 96
@@ -114,27 +114,6 @@ def _required(source: CaseText, name: str) -> list[Section]:
     if not blocks and name not in source.root:
         source.report(f"[[{name}]] blocks are missing", name)
     return blocks
-
-
-def _check_keys(source: CaseText) -> None:
-    """Report unknown sections and keys."""
-    sections = (*_KEYS, "load")
-    for name, value in source.root.table.items():
-        if name == "title":
-            continue
-        if name not in sections:
-            shown = written(name, value)
-            kind = f"section {shown}" if shown else f'key "{name}" before the first section'
-            source.report(f"unknown {kind}{closest(name, sections) or f'; the sections are {_words(sections)}'}", name)
-        elif not isinstance(value, (dict, list)):
-            source.report(f"{name}: must be a section, not {as_toml(value)}", name)
-        elif name != "load":
-            for block in source.blocks(name):
-                block.check_keys(_KEYS[name], f" in {_words((name,))}")
-
-
-def _words(names: tuple[str, ...]) -> str:
-    return ", ".join(f"[{name}]" if name == "joint" else f"[[{name}]]" for name in names)
 
 
 def _plate(source: CaseText, block: Section) -> JointPlate | None:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from fastpin.bodies.body import Harmonics, Remote
+from fastpin.bodies.compliance import Compliance, complex_coefficients
 from fastpin.errors import InputError
-from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import Joint
 from fastpin.joints.result import JointState
 from fastpin.joints.system import CENTRING, PinsSystem
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.lugs.several_holes import HolesCompliance
+from fastpin.model.checks import set_fields
 from fastpin.model.loads import LOADS
 from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, contact_residuals
 from fastpin.solver.errors import ConvergenceError
@@ -22,6 +26,38 @@ from fastpin.states.state import State
 
 ROUNDED = 1e-13
 """Entries of the compliance of a hole below this are rounding: those of a hole far from any other."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class HoleInPlate(Compliance):
+    """A hole of a plate as a plate body, in one state of a joint: what the other pins and the loads do to it is given.
+
+    Parameters
+    ----------
+    incoming : ndarray, shape (2 + 4 K,)
+        Displacement G v/R of the hole's edge, Pa, by the pins in the other holes and the loads of the plate.
+    """
+
+    incoming: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        incoming = np.array(self.incoming, dtype=float)
+        incoming.setflags(write=False)
+        set_fields(self, incoming=incoming)
+
+    def __reduce__(self) -> tuple[type[HoleInPlate], tuple[Any, ...]]:
+        return type(self), (*super().__reduce__()[1], self.incoming)
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of all numbers."""
+        numbers = np.r_[self.nu, self.hole_radius, self.matrix.ravel(), self.incoming]
+        return hashlib.sha256(self.plane.encode() + numbers.tobytes()).hexdigest()
+
+    def _edge_displacement(self, tractions: Harmonics, remote: Remote) -> np.ndarray:
+        moved: np.ndarray = super()._edge_displacement(tractions, remote) + complex_coefficients(self.incoming)
+        return moved
 
 
 class StateMaker:

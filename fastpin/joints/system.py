@@ -160,12 +160,11 @@ class PinsSystem(System):
     @cached_property
     def pins(self) -> list[list[int]]:
         """The sections of each pin."""
-        count = 1 + max(each.pin for each in self.sections)
-        return [[place for place, each in enumerate(self.sections) if each.pin == pin] for pin in range(count)]
+        return _sections_of_pins(self.sections)
 
     def is_smooth(self, pin: int) -> bool:
-        """Whether a pin has no friction in any of its plates: then nothing turns it."""
-        return all(self.sections[place].problem.frictionless for place in self.pins[pin])
+        """Whether nothing turns a pin."""
+        return _is_smooth(self.sections, self.pins[pin])
 
     @cached_property
     def turning(self) -> tuple[slice, ...]:
@@ -192,6 +191,17 @@ class PinsSystem(System):
         """Force along x and y and moment of each section on its plate per thickness, shape (sections, 3)."""
         found: np.ndarray = (self.resultants @ tractions).reshape(-1, 3)
         return found
+
+
+def _sections_of_pins(sections: Sequence[PinSection]) -> list[list[int]]:
+    """The places of the sections of each pin."""
+    count = 1 + max(each.pin for each in sections)
+    return [[place for place, each in enumerate(sections) if each.pin == pin] for pin in range(count)]
+
+
+def _is_smooth(sections: Sequence[PinSection], members: Sequence[int]) -> bool:
+    """Whether a pin with these sections has no friction in any of its plates: then nothing turns it."""
+    return all(sections[place].problem.frictionless for place in members)
 
 
 def build(
@@ -300,15 +310,14 @@ def _conditions(
     found, count = _Conditions(sections, alone, nodes, given, beta), 3 * len(sections)
     user = slice(len(LOADS), len(LOADS) + given.pins.shape[2])
     forces = np.zeros((len(found.rows), user.stop + 2))
-    for pin, on_pin in enumerate(given.pins):
-        members = [place for place, each in enumerate(sections) if each.pin == pin]
+    for members, on_pin in zip(_sections_of_pins(sections), given.pins, strict=True):
         head = 3 * members[0]
         forces[head : head + 2, user] = on_pin
         for place in members:
             for axis in (0, 1):
                 found.add_force(head + axis, place, axis, sections[place].thickness)
-        if all(sections[place].problem.frictionless for place in members):
-            found.rows[head + TURN, head + TURN] = 1.0  # nothing turns it
+        if _is_smooth(sections, members):
+            found.rows[head + TURN, head + TURN] = 1.0
         else:
             for place in members:
                 found.add_moment(head + TURN, place, sections[place].thickness)

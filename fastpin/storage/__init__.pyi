@@ -1,12 +1,9 @@
 from . import held_in_file as held_in_file
 from .export import to_dataframe as to_dataframe
 from .export import to_xarray as to_xarray
-from .held_in_file import largest_pressure as largest_pressure
 from .held_in_file import largest_residuals as largest_residuals
 from .held_in_file import marked_extremes as marked_extremes
 from .held_in_file import provenance as provenance
-from .held_in_file import stored_walk_doubts as stored_walk_doubts
-from .held_in_file import stored_yield_doubts as stored_yield_doubts
 from .journal import is_being_written as is_being_written
 from .layout import versions as versions
 from .recording import lacks_error_bars as lacks_error_bars

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fastpin.errors import InputWarning
-from fastpin.model import LoadHistory, Problem
-from fastpin.model.checks import file_path, instance
+from fastpin.model.checks import file_path
 from fastpin.model.doubts import pressure_doubts
 from fastpin.solver.result import Result
 from fastpin.states import choice, walking
@@ -58,20 +57,6 @@ def largest_residuals(path: str | Path) -> dict[str, float]:
     return dict(zip(layout.RESIDUALS, rows.max(axis=0).tolist(), strict=True)) if len(rows) else {}
 
 
-def largest_pressure(path: str | Path) -> float:
-    """Return the largest pressure at a node over all states of a file, Pa; 0 without states.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    with open_result(file_path("path", path)) as file:
-        rows = file["states/pressure"]
-        parts = (rows[begin : begin + STATES_AT_ONCE] for begin in range(0, len(rows), STATES_AT_ONCE))
-        return max((float(part.max(initial=0.0)) for part in parts), default=0.0)
-
-
 def marked_extremes(path: str | Path) -> Found:
     """Return the extremes of all states of a file that texts and figures show, see fastpin/states/extremes.py.
 
@@ -82,39 +67,6 @@ def marked_extremes(path: str | Path) -> Found:
     """
     with open_result(file_path("path", path)) as file:
         return read_extremes(file)
-
-
-def stored_walk_doubts(path: str | Path, problem: Problem) -> list[InputWarning]:
-    """Return the warnings of :func:`fastpin.states.walking.walk_doubts` for the last cycle of the file of a run.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`, and for objects of another kind.
-    """
-    if instance("problem", problem, Problem, "a Problem").seat is None or not (cycles := load(path, states=[]).cycles):
-        return []
-    states = load(path, states=places_between(path, *choice.span_of(cycles[-1]))).states
-    return walking.walk_doubts(states, cycles)
-
-
-def stored_yield_doubts(path: str | Path, problem: Problem, history: LoadHistory) -> list[InputWarning]:
-    """Return the warnings of :func:`fastpin.states.extremes.yield_doubts` for all states of the file of a run.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`, and for objects of another kind.
-    """
-    path = file_path("path", path)
-    instance("problem", problem, Problem, "a Problem")
-    instance("history", history, LoadHistory, "a LoadHistory")
-
-    def extremes() -> Found:
-        with open_result(path) as file:
-            return read_extremes(file, yield_extremes)
-
-    return yield_doubts(problem, history, extremes, lambda places: load(path, list(places)).states)
 
 
 class HeldInFile(Held):
@@ -148,7 +100,10 @@ class HeldInFile(Held):
     @cached_property
     def pressure(self) -> float:
         """The largest pressure at a node over all states, Pa."""
-        return largest_pressure(self._path)
+        with open_result(self._path) as file:
+            rows = file["states/pressure"]
+            parts = (rows[begin : begin + STATES_AT_ONCE] for begin in range(0, len(rows), STATES_AT_ONCE))
+            return max((float(part.max(initial=0.0)) for part in parts), default=0.0)
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Return the states at these places, in increasing order."""
@@ -162,5 +117,11 @@ class HeldInFile(Held):
         """Yield warnings of doubtful pressures and von Mises stresses in all states, and of a bush that walks."""
         problem, history = self.result.problem, self.result.history
         yield from pressure_doubts(problem, history, [np.array([self.pressure])])
-        yield from stored_yield_doubts(self._path, problem, history)
-        yield from stored_walk_doubts(self._path, problem)
+        yield from yield_doubts(problem, history, self._yield_extremes, self.read)
+        if problem.seat is not None and (cycles := self.result.cycles):
+            states = load(self._path, states=places_between(self._path, *choice.span_of(cycles[-1]))).states
+            yield from walking.walk_doubts(states, cycles)
+
+    def _yield_extremes(self) -> Found:
+        with open_result(self._path) as file:
+            return read_extremes(file, yield_extremes)

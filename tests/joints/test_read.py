@@ -9,6 +9,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from fastpin import CaseFileError, casefile, figures
+from fastpin.assess.outputs import whole_document
 from fastpin.cli.main import main
 from fastpin.joints import JOINT_EXAMPLE, JointResult, parse_joint, solve_joint
 from fastpin.report import joints as report
@@ -114,7 +115,7 @@ def test_a_joint_file_is_no_case_file() -> None:
 
 def test_text_and_json_tell_the_same_numbers() -> None:
     result = solved()
-    text, document = report.describe(result), report.document(result, "two bolts")
+    text, document = report.describe(result), whole_document(report.JOINT, result, {}, title="two bolts")
     assert "2 pins, 1 plates, 24 nodes a contact" in text
     assert json.loads(json.dumps(document, allow_nan=False)) == document
     Draft202012Validator(json_schema("joint")).validate(document)

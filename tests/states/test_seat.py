@@ -13,7 +13,6 @@ from fastpin.model import FatigueConstants
 from fastpin.report.states import hoop_line
 from fastpin.report.stress import depth_curves, field_curves, hoop_curves
 from fastpin.states.quantities import QUANTITIES, values
-from fastpin.storage import stored_walk_doubts
 from tests.support.refusals import refused
 
 STEEL = Material(210e9, 0.3)
@@ -258,7 +257,6 @@ def test_critical_distances_count_from_the_seat(method):
         assert found.parameter == pytest.approx(inside.parameter, rel=1e-9)
 
 
-def test_a_seat_and_a_problem_of_another_class_are_refused():
+def test_a_seat_of_another_class_is_refused():
     state = loaded("plate", nodes=61)
     assert str(refused(replace, state, seat=1.0)) == "seat: must be a State, not 1.0"
-    assert str(refused(stored_walk_doubts, "result.h5", 1.0)) == "problem: must be a Problem, not 1.0"
