@@ -42,14 +42,15 @@ from fastpin.states.quantities import QUANTITIES, ZONES, intervals, matching_val
 from fastpin.states.state import State
 from fastpin.studies.extrapolate import estimate
 from fastpin.verification import closed_forms
-from fastpin.verification.comparisons import cattaneo_mindlin_differences, residuals_away
+from fastpin.verification.comparisons import cattaneo_mindlin_differences
 from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE, FiniteElements
 from fastpin.verification.joint_rows import step, wearing
 from fastpin.verification.rows import Solving
-from fastpin.verification.sliding import solve_sliding
 from tests.support import joints
 from tests.support.checks import wear_limits
 from tests.support.checks.friction_rows import ROUGH
+from tests.support.checks.integral_equations import residuals_away
+from tests.support.checks.sliding import solve_sliding
 from tests.support.checks.wear_rows import half_planes
 from tests.support.wear_cases import WEAR_CASES, lived, numbers_of, parts_of, ready_to_wear
 from tests.survey.histories import GENERATORS, RandomCase, generate

@@ -19,7 +19,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from fastpin.verification.integral_equations import residuals
+from tests.support.checks.integral_equations import residuals
 
 SIZES = (101, 201, 401, 801, 1201, 2401)
 """Numbers of nodes that are timed."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from fastpin.model.angles import BOTTOM
 from fastpin.model.checks import check_callable
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.materials import MaterialPair
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.profile_terms import Harmonic
@@ -24,7 +24,6 @@ from fastpin.states.state import State
 from fastpin.verification import closed_forms, comparisons, joint_rows
 from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE, FiniteElements
 from fastpin.verification.rows import Check, Checks, Solving, angle_check, difference_check, half_width, relative_check
-from fastpin.verification.sliding import solve_sliding
 
 STATED = 1.2
 """Factor on the stated errors of the finite-element models, which are given as "about"."""
@@ -79,14 +78,6 @@ def _frictionless(pair: MaterialPair, load_parameter: float, mismatch: float, so
     yield angle_check("half-angle", half_width(state.contact[0]), half)
 
 
-def _coupled(pair: MaterialPair, load_parameter: float, solving: Solving) -> Checks:
-    problem = Problem.from_load_parameter(pair, load_parameter, 0.0)
-    (state,) = solving(problem, [{"P": 1.0}])
-    series = solve_sliding(problem, {"P": 1.0})
-    yield relative_check("peak N", state.peak_pressure, series.peak_pressure)
-    yield angle_check("half-angle", half_width(state.contact[0]), half_width(series.contact))
-
-
 def _finite_elements(name: str, solving: Solving) -> Checks:
     model = FiniteElements.read(name)
     states = solving(model.problem, model.history, grid=model.grid)
@@ -130,30 +121,6 @@ def _peak_shear(state: State, ratio: float, part: float) -> float:
             comparisons.cattaneo_mindlin(state, border, part * ratio, ratio, "unloading" if part < 1.0 else "loading")
         )
     )
-
-
-def _sliding(pair: MaterialPair, solving: Solving) -> Checks:
-    problem = Problem.from_load_parameter(pair, 0.5, 0.3, "centre", "fixed")
-    state = solving(problem, [{"P": 1.0}, {"Q": 1.0}])[-1]
-    series = solve_sliding(problem, {"P": 1.0, "Q": 1.0})
-    yield relative_check("peak N", state.peak_pressure, series.peak_pressure)
-    yield relative_check("peak T", abs(state.peak_shear), problem.uniform_friction * series.peak_pressure)
-    yield relative_check("moment", state.resultants["M"], series.moment)
-    for ours, reference in zip(state.contact[0], series.contact, strict=True):
-        yield angle_check("end", ours, reference)
-
-
-def _singular_equations(solving: Solving) -> Checks:
-    (state,) = solving(Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body"), [{"P": 1.0}])
-    first, second = comparisons.residuals_away(state, 0.085)
-    yield difference_check("(46)", first, "F beta*")
-    yield difference_check("(47)", second, "F beta*")
-
-
-def _singular_equations_with_stress(solving: Solving) -> Checks:
-    problem = Problem.from_load_parameter(UNLIKE, 0.3, 0.5, "centre")
-    state = solving(problem, [{"P": 1.0}, {"Q": 0.2, "sxx": 0.3, "syy": -0.1}])[-1]
-    yield difference_check("(47)", comparisons.residuals_away(state, 0.15)[1], "F beta*")
 
 
 FREE = Problem.from_load_parameter(UNLIKE, 0.05, 0.5, "body")
@@ -268,11 +235,6 @@ def _conditions(solving: Solving) -> Checks:
 Cases = Mapping[str, Callable[[Solving], Checks]]
 
 _FITTED = {"like": LIKE, "Ti-6Al-4V in Al": UNLIKE}
-_COUPLED = {
-    "Ti-6Al-4V in Al": UNLIKE,
-    "rigid pin": MaterialPair(Material.rigid(), MATERIALS["aluminium"]),
-    "soft pin": MaterialPair(Material(1e9, 0.2), Material(30e9, 0.3)),
-}
 
 
 class Topic(NamedTuple):
@@ -309,15 +271,6 @@ TOPICS = {
         },
         {"peak N": 8e-6, "half-angle": 2.5e-6},
     ),
-    "coupled": Topic(
-        "Without friction, unlike bodies: Eq. (58) by Jacobi polynomials",
-        {
-            f"L_p = {value:g}, {name}": partial(_coupled, pair, value)
-            for name, pair in _COUPLED.items()
-            for value in (0.05, 0.5)
-        },
-        {"peak N": 1e-5, "half-angle": 1.2e-5},
-    ),
     "elements, frictionless": Topic(
         "Finite elements, without friction, L_p = 0.05",
         {"P": partial(_finite_elements, "frictionless")},
@@ -348,16 +301,6 @@ TOPICS = {
             "int |dT|": 2e-3,
             "stick ratio": 1e-7,
         },
-    ),
-    "sliding": Topic(
-        "Full sliding, mu = 0.3, L_p = 0.5: Eq. (58) by Jacobi polynomials",
-        {"like bodies": partial(_sliding, LIKE), "unlike bodies": partial(_sliding, UNLIKE)},
-        {"peak N": 8e-6, "peak T": 8e-6, "moment": 7e-6, "end": 4e-6, "end, unlike bodies": 5e-6},
-    ),
-    "equations": Topic(
-        "Residuals of the singular integral equations (46), (47)",
-        {"P": _singular_equations, "Q and remote stress": _singular_equations_with_stress},
-        {"(46)": 2e-5, "(47)": 2e-6, "(47), Q and remote stress": 1.5e-6},
     ),
     "stresses": Topic(
         "Stresses: Kirsch, Lame, tractions on the edges, loads through circles",

@@ -1,4 +1,4 @@
-"""Differences of solved states from closed forms and from the singular integral equations.
+"""Differences of solved states from closed forms.
 
 ``fastpin verify``, bench/accuracy.py, figures and the tests share these measures. Problems are dimensionless
 (R = F = beta* = 1).
@@ -11,16 +11,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fastpin.elasticity.system import System
-from fastpin.model import angles, loads
-from fastpin.model.grid import LEAST_NODES, Grid
+from fastpin.model import angles
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
-from fastpin.solver.rest import rest_position
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from fastpin.verification import closed_forms, integral_equations, interference
+from fastpin.verification import closed_forms, interference
 
 
 def cattaneo_mindlin(
@@ -102,44 +99,6 @@ def stress_resultant(state: State, body: Body, radius: float, count: int = 400) 
     stress = state.stress(Points.at_radius(radius, theta), body, straight=True)
     force = -2.0 * np.pi * radius * np.mean((stress.radial + 1j * stress.shear) * np.exp(1j * theta))
     return complex(force), -2.0 * np.pi * radius**2 * float(stress.shear.mean())
-
-
-def residuals_away(state: State, margin: float) -> tuple[float, float]:
-    """Return the largest residuals of (46) and (47) inside the contact, away from its edges and borders.
-
-    Parameters
-    ----------
-    state : State
-        A state with one contact interval. The pin must have been pressed to the bottom first, and no load reversed: a
-        reversal leaves kinks of the slip. An initial gap must be smooth.
-    margin : float
-        Least distance from contact edges and stick borders, rad.
-
-    Returns
-    -------
-    r46, r47 : float
-        In units of F beta* with F = P.
-    """
-    load = state.load
-    equations = integral_equations.residuals(
-        state.problem, load["P"], state.grid, state.pressure, state.shear, state.slip, state.rotation,
-        sxx=load["sxx"], syy=load["syy"], sxy=load["sxy"], rest=_bottom(state),
-    )  # fmt: skip
-    ((start, stop),) = state.contact
-    away = np.abs(angles.angle_between(state.theta, 0.5 * (start + stop))) < 0.5 * (stop - start) - margin
-    for border in np.ravel(state.stick):
-        away &= np.abs(angles.angle_between(state.theta, border)) > margin
-    first, second = (float(np.abs(residual[away]).max()) for residual in equations)
-    return first, second
-
-
-def _bottom(state: State) -> tuple[float, float] | None:
-    """The position of the rigid pin that is pushed to the bottom of a hole with a gap, m; None in a round hole."""
-    if not state.problem.gap:
-        return None
-    system = System.build(state.problem, Grid.circle(LEAST_NODES), state.problem.natural_loads()["force"])
-    x, y = rest_position(system, np.zeros(len(loads.LOADS)), angles.BOTTOM)[0] * system.scales.displacement
-    return float(x), float(y)
 
 
 def all_round_difference(state: State) -> float:

@@ -25,7 +25,7 @@ from fastpin.report.summary import document
 from fastpin.solver.rest import hole_gap
 from fastpin.solver.solving import solve
 from fastpin.storage.layout import all_loads
-from fastpin.verification.comparisons import residuals_away
+from tests.support.checks.integral_equations import residuals_away
 from tests.support.once import solve_once
 from tests.support.samples import JOINT
 from tests.support.tiers import gate

@@ -11,7 +11,7 @@ from fastpin.assess.outputs import Curve
 from fastpin.model.problem import Problem
 from fastpin.published import tractions
 from fastpin.solver.solving import solve
-from fastpin.verification.sliding import solve_sliding
+from tests.support.checks.sliding import solve_sliding
 from tests.support.tiers import for_gate
 
 NODES = 61

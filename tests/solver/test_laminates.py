@@ -15,8 +15,8 @@ from fastpin.model.points import Points
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.verification.interference import uniform_pressure
-from fastpin.verification.sliding import solve_sliding
 from tests.support.checks.laminate_rows import laminate
+from tests.support.checks.sliding import solve_sliding
 from tests.support.laminates import RIGID, ROWS, STEEL, TURNED, orthotropic
 from tests.support.once import solve_once
 from tests.support.tiers import some_gate

@@ -18,7 +18,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver.configuration import solve_statuses
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
-from fastpin.verification.comparisons import residuals_away
+from tests.support.checks.integral_equations import residuals_away
 
 BOTTOM = -0.5 * math.pi
 ORDERS = [

@@ -23,8 +23,8 @@ from fastpin.report.summary import document
 from fastpin.solver.solving import solve
 from fastpin.states.quantities import in_degrees, values
 from fastpin.states.state import State
-from fastpin.verification.comparisons import residuals_away
-from fastpin.verification.sliding import solve_sliding
+from tests.support.checks.integral_equations import residuals_away
+from tests.support.checks.sliding import solve_sliding
 
 TOP = 0.5 * math.pi
 TURN = 2.0 * math.pi

@@ -119,7 +119,6 @@ MANY_PARAMETERS: dict[str, str] = {
     "studies/convergence.py converge": "the choices of a study are spelt out for help and completion",
     "storage/recording.py record": "the arguments of solve, and three of the file",
     "storage/wear_files.py wear": "the arguments of solve, those of wear, and five of the file",
-    "verification/integral_equations.py residuals": "the quantities of the equations (46), (47)",
 }
 """Functions of more parameters, and why."""
 

@@ -26,7 +26,6 @@ from fastpin import (
     published,
     report,
     studies,
-    verification,
 )
 from fastpin.assess.outputs import Curve
 from fastpin.errors import FastpinError
@@ -198,7 +197,7 @@ class Valid:
             report.convergence.reported_series(study, problem, study.series[0].corner)[0],
             lugs.PlateResult(compliance, 0.0, 0.0, 0.0, 100), published.Row("peak", "1", "0.5", 0.5),
             Curve({"mu": 0.4}, {"angle (deg)": np.zeros(3)}), model.About("a project", revision="B"),
-            fastpin.Session, verification.solve_sliding(_sliding_problem(pair), {"P": 1.0, "Q": 1.0}),
+            fastpin.Session,
             model.Profile.ellipse(1e-5), model.InitialGap(pin=model.Profile.lobes(3, 1e-5)), model.Wear(1e-14), life,
             model.FatigueAssessment(),
             life[-1], worn, worn.crack, crack, law, grown, cracks.stress_intensity(state, crack, [length]), NASGRO,
@@ -386,8 +385,6 @@ class Valid:
             "Result.report.progress": enough,
             "plate_compliance.progress": enough,
             "plate_compliance.lug": casefile.parse_lug(LUG).lug,
-            "solve_sliding.problem": _sliding_problem(result.problem.pair),
-            "solve_sliding.load": {"P": 1.0, "Q": 1.0},
             "bush_fit.friction": 0.3,
             "Session.change.friction": 0.3,
             "FatigueConstants.required.names": ["fatigue_strength"],
@@ -501,10 +498,6 @@ BY_NAME: dict[str, Any] = {
 def _driven(problem: fastpin.Problem) -> fastpin.Problem:
     """The problem with a prescribed displacement along x."""
     return replace(problem, drive="ux", rotation="fixed")
-
-
-def _sliding_problem(pair: fastpin.MaterialPair) -> fastpin.Problem:
-    return fastpin.Problem.from_load_parameter(pair, 0.5, 0.3, "centre", "fixed")
 
 
 def _always(value: Any) -> Callable[[], Any]:

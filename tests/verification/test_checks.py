@@ -146,10 +146,12 @@ def test_a_wrong_closed_form_is_seen(only, monkeypatch, capsys) -> None:
     assert lines[-1].startswith("6 of 10 within tolerance, ")
 
 
-@pytest.mark.parametrize("name", ["fill_operator", "fill_cauchy"])
-def test_a_wrong_kernel_is_seen(only, monkeypatch, name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "topic"), [("fill_operator", "like"), ("fill_operator", "equations"), ("fill_cauchy", "equations")]
+)
+def test_a_wrong_kernel_is_seen(only, monkeypatch, name: str, topic: str) -> None:
     """A ten-thousandth too large."""
-    only("equations")
+    only(topic)
     exact = getattr(influence, name)
 
     def wrong(*given):

@@ -15,9 +15,8 @@ from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
-from fastpin.verification.comparisons import residuals_away
-from fastpin.verification.integral_equations import cauchy_matrix, residuals
 from tests.support.bodies import JOINTS, joint_problem
+from tests.support.checks.integral_equations import cauchy_matrix, residuals, residuals_away
 from tests.support.integrals import log_integrals
 
 STEEL = MATERIALS["steel"]

@@ -7,7 +7,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.materials import MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
-from fastpin.verification import integral_equations
+from tests.support.checks import integral_equations
 from tests.support.laminates import STEEL, TURNED
 
 BESIDE = 0.15

@@ -16,8 +16,8 @@ from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
-from fastpin.verification.sliding import Sliding, solve_sliding
 from tests.support.bodies import JOINTS, joint_problem
+from tests.support.checks.sliding import Sliding, solve_sliding
 from tests.support.tiers import gate
 
 BOTTOM = -0.5 * math.pi

@@ -23,8 +23,8 @@ from fastpin.solver.solving import solve
 from fastpin.storage.recording import record, resume
 from fastpin.studies.identity import canonical
 from fastpin.studies.plan import parse_plan
-from fastpin.verification.comparisons import residuals_away
-from fastpin.verification.sliding import solve_sliding
+from tests.support.checks.integral_equations import residuals_away
+from tests.support.checks.sliding import solve_sliding
 from tests.support.once import solve_once
 from tests.support.programs import assert_same, difference
 from tests.support.samples import JOINT

@@ -18,7 +18,7 @@ from fastpin.report.summary import document
 from fastpin.solver.solving import solve
 from fastpin.studies.identity import canonical
 from fastpin.studies.plan import parse_plan
-from fastpin.verification.sliding import solve_sliding
+from tests.support.checks.sliding import solve_sliding
 from tests.support.programs import assert_same, difference
 from tests.support.tiers import gate
 

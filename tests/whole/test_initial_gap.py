@@ -24,9 +24,10 @@ from fastpin.solver.errors import ArcError
 from fastpin.solver.rest import hole_gap, rest_position
 from fastpin.solver.solving import solve
 from fastpin.verification import interference
-from fastpin.verification.comparisons import all_round_difference, residuals_away
+from fastpin.verification.comparisons import all_round_difference
 from fastpin.verification.finite_elements import LIKE, UNLIKE
-from fastpin.verification.sliding import solve_sliding
+from tests.support.checks.integral_equations import residuals_away
+from tests.support.checks.sliding import solve_sliding
 from tests.support.once import solve_once
 from tests.support.programs import assert_same_bits
 

@@ -12,7 +12,7 @@ from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
-from fastpin.verification.integral_equations import cauchy_matrix
+from tests.support.checks.integral_equations import cauchy_matrix
 from tests.support.integrals import log_integrals
 from tests.support.potentials import (
     KOLOSOV,

@@ -18,8 +18,8 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
-from fastpin.verification.sliding import solve_sliding
 from tests.support.bodies import joint_problem
+from tests.support.checks.sliding import solve_sliding
 from tests.support.once import solve_once
 
 HISTORY = [

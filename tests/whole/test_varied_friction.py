@@ -16,9 +16,9 @@ from fastpin.model.profile_terms import Harmonic, Zone
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from fastpin.verification.comparisons import residuals_away
 from fastpin.verification.finite_elements import LIKE, UNLIKE
-from fastpin.verification.sliding import solve_sliding
+from tests.support.checks.integral_equations import residuals_away
+from tests.support.checks.sliding import solve_sliding
 from tests.support.programs import assert_same_bits
 from tests.support.tiers import some_gate
 from tests.survey.histories import generate

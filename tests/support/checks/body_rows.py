@@ -9,8 +9,8 @@ import numpy as np
 from fastpin.verification import interference
 from fastpin.verification.joint_rows import STUCK
 from fastpin.verification.rows import Checks, Solving, angle_check, difference_check, half_width, relative_check
-from fastpin.verification.sliding import solve_sliding
 from tests.support.checks import body_cases
+from tests.support.checks.sliding import solve_sliding
 
 
 def finite_bodies(name: str, solving: Solving) -> Checks:

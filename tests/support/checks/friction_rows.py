@@ -6,10 +6,10 @@ from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.states.state import State
-from fastpin.verification.comparisons import residuals_away
 from fastpin.verification.finite_elements import FRETTING, UNLIKE
 from fastpin.verification.joint_rows import PUSHED
 from fastpin.verification.rows import Check, Checks, Solving, difference_check, relative_check
+from tests.support.checks.integral_equations import residuals_away
 
 ROUGH = Problem.from_load_parameter(
     UNLIKE, 0.1, Profile((Harmonic(0, 0.35), Harmonic.from_bottom(3, 0.0, 0.2))), "centre", "fixed"

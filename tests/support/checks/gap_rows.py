@@ -13,8 +13,8 @@ from fastpin.verification.comparisons import all_round_difference
 from fastpin.verification.finite_elements import LIKE
 from fastpin.verification.joint_rows import STUCK
 from fastpin.verification.rows import Checks, Solving, angle_check, difference_check, relative_check
-from fastpin.verification.sliding import solve_sliding
 from tests.support.checks.body_cases import RING
+from tests.support.checks.sliding import solve_sliding
 
 WAVES = InitialGap(Profile((Harmonic(1, 0.01), Harmonic(2, 0.02, 0.01), Harmonic(3, 0.005))))
 """Waves of a fit that stays closed all round."""

@@ -9,6 +9,7 @@ from tests.support.checks import (
     body_cases,
     body_rows,
     crack_rows,
+    equation_rows,
     friction_rows,
     gap_rows,
     laminate_rows,
@@ -18,6 +19,25 @@ from tests.support.checks import (
 )
 
 FURTHER = {
+    "coupled": Topic(
+        "Without friction, unlike bodies: Eq. (58) by Jacobi polynomials",
+        {
+            f"L_p = {value:g}, {name}": partial(equation_rows.coupled, pair, value)
+            for name, pair in equation_rows.COUPLED.items()
+            for value in (0.05, 0.5)
+        },
+        {"peak N": 1e-5, "half-angle": 1.2e-5},
+    ),
+    "sliding": Topic(
+        "Full sliding, mu = 0.3, L_p = 0.5: Eq. (58) by Jacobi polynomials",
+        {"like bodies": partial(equation_rows.sliding, LIKE), "unlike bodies": partial(equation_rows.sliding, UNLIKE)},
+        {"peak N": 8e-6, "peak T": 8e-6, "moment": 7e-6, "end": 4e-6, "end, unlike bodies": 5e-6},
+    ),
+    "equations": Topic(
+        "Residuals of the singular integral equations (46), (47)",
+        {"P": equation_rows.singular_equations, "Q and remote stress": equation_rows.singular_equations_with_stress},
+        {"(46)": 2e-5, "(47)": 2e-6, "(47), Q and remote stress": 1.5e-6},
+    ),
     "strains": Topic(
         "Hoop strains of pin and plate: gap and slip",
         {

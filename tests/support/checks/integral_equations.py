@@ -16,13 +16,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.bodies.compliance import complex_coefficients, plate_coefficients
+from fastpin.elasticity.system import System
 from fastpin.elasticity.terms import BodyTerms, body_terms
 from fastpin.errors import InputError
 from fastpin.kernels import fourier, influence
+from fastpin.model import angles, loads
 from fastpin.model.checks import number, numbers, positive
-from fastpin.model.grid import Grid
+from fastpin.model.grid import LEAST_NODES, Grid
 from fastpin.model.loads import LOADS, SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
+from fastpin.solver.rest import rest_position
+from fastpin.states.state import State
 
 
 def cauchy_matrix(grid: Grid) -> np.ndarray:
@@ -225,3 +229,41 @@ def _nodal(field: str, values: ArrayLike, grid: Grid) -> np.ndarray:
     if array.shape != (grid.size,):
         raise InputError(field, f"must have one number per node, shape ({grid.size},), not {array.shape}")
     return array
+
+
+def residuals_away(state: State, margin: float) -> tuple[float, float]:
+    """Return the largest residuals of (46) and (47) inside the contact, away from its edges and borders.
+
+    Parameters
+    ----------
+    state : State
+        A state with one contact interval. The pin must have been pressed to the bottom first, and no load reversed: a
+        reversal leaves kinks of the slip. An initial gap must be smooth.
+    margin : float
+        Least distance from contact edges and stick borders, rad.
+
+    Returns
+    -------
+    r46, r47 : float
+        In units of F beta* with F = P.
+    """
+    load = state.load
+    equations = residuals(
+        state.problem, load["P"], state.grid, state.pressure, state.shear, state.slip, state.rotation,
+        sxx=load["sxx"], syy=load["syy"], sxy=load["sxy"], rest=_bottom(state),
+    )  # fmt: skip
+    ((start, stop),) = state.contact
+    away = np.abs(angles.angle_between(state.theta, 0.5 * (start + stop))) < 0.5 * (stop - start) - margin
+    for border in np.ravel(state.stick):
+        away &= np.abs(angles.angle_between(state.theta, border)) > margin
+    first, second = (float(np.abs(residual[away]).max()) for residual in equations)
+    return first, second
+
+
+def _bottom(state: State) -> tuple[float, float] | None:
+    """The position of the rigid pin that is pushed to the bottom of a hole with a gap, m; None in a round hole."""
+    if not state.problem.gap:
+        return None
+    system = System.build(state.problem, Grid.circle(LEAST_NODES), state.problem.natural_loads()["force"])
+    x, y = rest_position(system, np.zeros(len(loads.LOADS)), angles.BOTTOM)[0] * system.scales.displacement
+    return float(x), float(y)
