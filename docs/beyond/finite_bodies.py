@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from docs.beyond.curves import curves_of
 from fastpin.assess.outputs import Curve
 from fastpin.bodies import Disk, Plate, Ring, Tube
 from fastpin.bodies.pins import TubeLoad
 from fastpin.bodies.ring import SUPPORTS, Support
 from fastpin.figures.style import Line, line
 from fastpin.model import Material, MaterialPair, Problem
-from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, marked, panels, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, marked, panels, steps
 from fastpin.published.tractions import Panel, chosen, traction_curve, traction_figure
 from fastpin.solver.solving import solve
 

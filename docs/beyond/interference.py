@@ -16,12 +16,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from docs.beyond.curves import curves_of
 from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import line
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model import Grid, Problem
-from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, head, panels, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, head, panels, steps
 from fastpin.published.tractions import ANGLE, traction_curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

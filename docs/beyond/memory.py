@@ -13,10 +13,11 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from docs.beyond.curves import curves_of
 from fastpin.assess.outputs import Curve
 from fastpin.model import Grid, LoadHistory, Problem, angles
 from fastpin.published.fretting import FRICTION
-from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, marked, panels, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, marked, panels, steps
 from fastpin.published.tractions import PAIRS
 from fastpin.solver import Result, solve
 from fastpin.states.state import State

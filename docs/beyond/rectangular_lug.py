@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from docs.beyond.curves import curves_of
 from docs.beyond.finite_bodies import CASE, INFINITE, LOAD_PARAMETER, PAIR
 from fastpin.assess.outputs import Curve
 from fastpin.bodies import Compliance, Plate
@@ -21,7 +22,7 @@ from fastpin.lugs.outline import Lug, rectangle
 from fastpin.lugs.plates import plate_compliance
 from fastpin.model.angles import BOTTOM
 from fastpin.model.problem import Problem
-from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, panels, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, panels, steps
 from fastpin.published.tractions import ANGLE, QUANTITIES, traction_curve
 from fastpin.solver.solving import solve
 

@@ -48,7 +48,6 @@ def run(options: argparse.Namespace) -> int:
         ],
         options.json,
         lambda: outputs.whole_document(report.joints.JOINT, result, {}, title=case.title),
+        lambda: [*filter(None, [case.title]), *report.joints.describe(result).split("\n")],
     )
-    if options.json != "-":
-        terminal.say(*filter(None, [case.title]), *report.joints.describe(result).split("\n"))
     return code or written

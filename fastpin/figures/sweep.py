@@ -36,6 +36,7 @@ _UNSURE: Any = {
     "linestyle": "none",
 }  # fmt: skip
 _ENDLESS: Any = {"marker": r"$\uparrow$", "markersize": 7.0, "linestyle": "none", "clip_on": False}
+_CROSS: Any = {"marker": "x", "markersize": 4.0, "linestyle": "none"}
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
 MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 """Marks of the computed values, as many as colours. Crosses mark failed runs."""
@@ -392,8 +393,8 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
             panel.plot(chart.x.values[unknown], numbers[unknown], **_UNSURE)
             any_unknown = any_unknown or bool(unknown.any())
         if chart.endless:
-            _mark_endless(panel, chart.x.values[chart.endless[part]], index)
-        _mark_failed(panel, chart.x.values[failed], index)
+            _mark(panel, chart.x.values[chart.endless[part]], index, 0.97 - 0.04 * index, **_ENDLESS)
+        _mark(panel, chart.x.values[failed], index, 0.02 + 0.03 * index, **_CROSS)
         any_failed = any_failed or bool(failed.any())
         if name:
             handles.append(Line2D([], [], label=name, **style))
@@ -412,7 +413,7 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
     if any_unknown:
         handles.append(Line2D([], [], label="error not known", **_UNSURE))
     if any_failed:
-        handles.append(Line2D([], [], color="0.3", linestyle="none", marker="x", markersize=4.0, label="failed run"))
+        handles.append(Line2D([], [], color="0.3", label="failed run", **_CROSS))
     some = f"{len(shown)} of {len(chart.parts)} curves" if len(shown) < len(chart.parts) else ""
     sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
     _add_legend(sheet, handles, across, some)
@@ -443,10 +444,9 @@ def _add_legend(sheet: Sheet, handles: Sequence[Any], columns: int, title: str =
     sheet.legend([filled[k] for first in range(columns) for k in range(first, len(filled), columns)], columns, title)
 
 
-def _mark_endless(panel: Axes, x: np.ndarray, index: int) -> None:
-    """Mark the runs of a curve whose life does not end, by arrows at the upper edge of the panel."""
-    there = np.full(len(x), 0.97 - 0.04 * index)
-    panel.plot(x, there, transform=panel.get_xaxis_transform(), color=line(index)["color"], **_ENDLESS)
+def _mark(panel: Axes, x: np.ndarray, index: int, height: float, **style: Any) -> None:
+    """Mark runs of a curve near an edge of the panel, at a height in parts of it: each curve has a row of marks."""
+    panel.plot(x, np.full(len(x), height), transform=panel.get_xaxis_transform(), color=line(index)["color"], **style)
 
 
 def _with_margin(axis: Axis) -> tuple[float, float]:
@@ -457,19 +457,6 @@ def _with_margin(axis: Axis) -> tuple[float, float]:
         return low / part, high * part
     margin = 0.04 * (high - low) or 0.5 * (abs(high) or 1.0)
     return low - margin, high + margin
-
-
-def _mark_failed(panel: Axes, x: np.ndarray, index: int) -> None:
-    """Mark the failed runs of a curve at the lower edge of the panel. Each curve has a row of marks."""
-    panel.plot(
-        x,
-        np.full(len(x), 0.02 + 0.03 * index),
-        transform=panel.get_xaxis_transform(),
-        marker="x",
-        markersize=4.0,
-        linestyle="none",
-        color=line(index)["color"],
-    )
 
 
 def _scale_axes(panel: Axes, chart: Chart) -> None:

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, read_text
 from fastpin.errors import CaseFileError, InputError
@@ -47,19 +47,16 @@ MOST_FAILED = 200
 """Most failed runs that are listed with their reasons."""
 
 
-def limits_section(study: Tolerances, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
-    """Return the section of the plan: fields with their limits, outcomes, and the text."""
-    fields = [
-        (name, f"{each.nominal:.6g}", f"{each.low:.6g} to {each.high:.6g}") for name, each in study.limits.items()
-    ]
-    heads = ("field", "nominal", "limits, in the units of the case file")
-    parts: list[SectionPart] = [Facts("Fields and their limits", fields, heads)]
-    outcomes = [(name, definition_words(outcome)) for name, outcome in study.plan.outcomes.items()]
-    parts.append(Facts("Outcomes", outcomes, ("name", "definition")))
-    return PageSection("plan", "Plan", [*parts, Listing("The plan", study.plan.text)])
+class Parts(NamedTuple):
+    """What the sections of a page share: the plan, its rows and its figures; of a tolerance study also the study."""
+
+    plan: Plan
+    runs: Sequence[dict[str, Any]]
+    album: Album
+    study: Tolerances | None = None
 
 
-def effects_section(study: Tolerances, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
+def _effects(study: Tolerances, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
     """Return the section of the effects: for each outcome a table and sentences, then tornados and samples."""
     parts: list[SectionPart] = []
     if lost := failed_words(study, runs):
@@ -125,12 +122,11 @@ def write_sweep_report(
         words = f"was made by fastpin {version}, which names its runs differently: write its page with that version"
         raise InputError(str(folder), words)
     found, study = _plan_of(folder, digest) if plan is None else _plan_in(file_path("plan", plan))
-    runs, album, sections = rows(found, folder), Album(), []
-    makers = SECTIONS if study is None else _sections_of(study)
-    for number, make in enumerate(makers):
-        report(number, len(makers))
-        sections.append(make(found, runs, album))
-    report(len(makers), len(makers))
+    page, sections = Parts(found, rows(found, folder), Album(), study), []
+    for number, make in enumerate(SECTIONS):
+        report(number, len(SECTIONS))
+        sections.append(make(page))
+    report(len(SECTIONS), len(SECTIONS))
     if found.digest != digest:
         words = "The sweep was last run with another plan than this one; runs that it lacks are waiting."
         sections[0] = PageSection("overview", "Overview", [*sections[0].parts, Text(words, "note")])
@@ -147,16 +143,6 @@ def _plan_in(path: Path) -> tuple[Plan, Tolerances | None]:
         study = read_tolerances(path)
         return study.plan, study
     return read_plan(path), None
-
-
-def _sections_of(study: Tolerances) -> Sequence[Callable[[Plan, Sequence[dict[str, Any]], Album], PageSection]]:
-    """Return the sections of a tolerance study: its limits and effects stand for plan and charts of a sweep."""
-    own = {_plan: limits_section, _charts: effects_section}
-
-    def of_study(make: Callable[..., PageSection]) -> Callable[..., PageSection]:
-        return lambda plan, runs, album: own[make](study, runs, album)
-
-    return [of_study(make) if make in own else make for make in SECTIONS]
 
 
 def _plan_of(folder: Path, digest: str | None) -> tuple[Plan, Tolerances | None]:
@@ -180,7 +166,8 @@ def _plan_of(folder: Path, digest: str | None) -> tuple[Plan, Tolerances | None]
     raise InputError(str(folder), f"its plan can't be read from here; name the plan. The first fault: {fault}")
 
 
-def _overview(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
+def _overview(page: Parts) -> PageSection:
+    plan, runs = page.plan, page.runs
     counts = Counter(run["status"] for run in runs)
     words = ", ".join(f"{counts[status]:,} {status}" for status in (DONE, FAILED, WAITING))
     seconds = sum(run.get("seconds") or 0.0 for run in runs)
@@ -194,23 +181,25 @@ def _overview(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageS
     return PageSection("overview", "Overview", parts)
 
 
-def _plan(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
-    fields = []
+def _plan(page: Parts) -> PageSection:
+    plan, fields = page.plan, []
     for name, spacing in plan.fields.items():
         values = list(dict.fromkeys(brief(point.values[name]) for point in plan.points if name in point.values))
         shown = values if len(values) <= 12 else [*values[:3], "...", *values[-3:]]
         fields.append((name, f"{len(values):,}", ", ".join(shown), spacing))
-    parts: list[SectionPart] = [Facts("Varied fields", fields, ("field", "values", "which", "spacing"))]
-    if plan.outcomes:
-        outcomes = [(name, definition_words(outcome)) for name, outcome in plan.outcomes.items()]
-        parts.append(Facts("Outcomes", outcomes, ("name", "definition")))
-    parts.append(Listing("The plan", plan.text))
-    return PageSection("plan", "Plan", parts)
+    facts = Facts("Varied fields", fields, ("field", "values", "which", "spacing"))
+    if page.study is not None:
+        limits = page.study.limits.items()
+        found = [(name, f"{each.nominal:.6g}", f"{each.low:.6g} to {each.high:.6g}") for name, each in limits]
+        facts = Facts("Fields and their limits", found, ("field", "nominal", "limits, in the units of the case file"))
+    outcomes = [(name, definition_words(outcome)) for name, outcome in plan.outcomes.items()]
+    listed = [Facts("Outcomes", outcomes, ("name", "definition"))] if outcomes else []
+    return PageSection("plan", "Plan", [facts, *listed, Listing("The plan", plan.text)])
 
 
-def _first_case(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
-    point = plan.points[0]
-    case = plan.case(point)
+def _first_case(page: Parts) -> PageSection:
+    point = page.plan.points[0]
+    case = page.plan.case(point)
     columns, hidden = corner_columns(case.problem, case.history)
     note = f" ({hidden:,} corners not shown here)" if hidden else ""
     words = f"The first run, {point.id}: {describe_values(point.values)}."
@@ -222,7 +211,10 @@ def _first_case(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Pag
     return PageSection("case", "The first case", parts)
 
 
-def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
+def _charts(page: Parts) -> PageSection:
+    plan, runs, album, study = page
+    if study is not None:
+        return _effects(study, runs, album)
     names = [*plan.outcomes] or ["peak_pressure", "contact_width", "stick_width", "dissipation"]
     parts: list[SectionPart] = []
     try:
@@ -247,8 +239,9 @@ def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSec
     return PageSection("results", "Results", parts)
 
 
-def _table(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
-    columns, gaps, half = run_columns(plan, runs), {}, MOST_RUNS // 2
+def _table(page: Parts) -> PageSection:
+    runs = page.runs
+    columns, gaps, half = run_columns(page.plan, runs), {}, MOST_RUNS // 2
     parts: list[SectionPart] = []
     if len(runs) > MOST_RUNS:
         columns = [(name, unit, [*cells[:half], *cells[-half:]]) for name, unit, cells in columns]
@@ -257,8 +250,8 @@ def _table(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSect
     return PageSection("runs", "Runs", [Table("Runs with their fields and values", columns, gaps), *parts])
 
 
-def _failed(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
-    failed = [(run, point) for run, point in zip(runs, plan.points, strict=True) if run["status"] == FAILED]
+def _failed(page: Parts) -> PageSection:
+    failed = [(run, point) for run, point in zip(page.runs, page.plan.points, strict=True) if run["status"] == FAILED]
     if not failed:
         return PageSection("failed", "Failed runs", [Text("No run has failed.")])
     listed = [
@@ -272,7 +265,8 @@ def _failed(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSec
     return PageSection("failed", "Failed runs", parts)
 
 
-def _provenance(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
+def _provenance(page: Parts) -> PageSection:
+    runs = page.runs
     ended = [run for run in runs if run.get("versions")]
     names = sorted({", ".join(f"{name} {value}" for name, value in run["versions"].items()) for run in ended})
     started = sorted(run["started"] for run in ended if run.get("started"))
@@ -280,7 +274,7 @@ def _provenance(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Pag
     found = [("solved by", version) for version in names]
     found += [("machine", host) for host in sorted({run["host"] for run in ended if run.get("host")})]
     found += [("first run begun", started[0]), ("last run begun", started[-1])] if started else []
-    found += [("SHA-256 of fields and runs", plan.digest)]
+    found += [("SHA-256 of fields and runs", page.plan.digest)]
     found += [("largest residual of all runs", f"{max(residuals):.1e}")] if residuals else []
     return PageSection("provenance", "Versions and provenance", [Facts("Origin", found, ("subject", "value"))])
 

@@ -5,7 +5,7 @@ A row has a published number as printed, fastpin's number, and what follows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from textwrap import wrap
@@ -153,16 +153,6 @@ def steps(items: Sequence[Item], progress: Report | None) -> Iterator[Item]:
         yield item
         if progress is not None:
             progress((index + 1) / len(items))
-
-
-def curves_of(columns: Sequence[str], rows: Iterable[tuple[dict[str, Any], Sequence[float]]]) -> list[Curve]:
-    """Return a curve for each set of parameters: of its rows, which have a number for each of the `columns`."""
-    found: dict[tuple[tuple[str, Any], ...], list[Sequence[float]]] = {}
-    for parameters, row in rows:
-        found.setdefault(tuple(parameters.items()), []).append(row)
-    return [
-        Curve(dict(parameters), dict(zip(columns, np.array(each).T, strict=True))) for parameters, each in found.items()
-    ]
 
 
 def table(title: str, statement: str, sources: Sequence[str], rows: Sequence[Row]) -> str:

@@ -292,32 +292,29 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
     others_words = {other: value_words(plan, rows, other, unit) for other in others}
     axes = [_axis(plan, rows, name, unit) for name in (y, x) if name is not None]
     shape = tuple(len(axis.values) for axis, _ in axes)
-    parts: dict[str, tuple[np.ndarray, np.ndarray]] = {}
-    bars: dict[str, np.ndarray] = {}
-    endless: dict[str, np.ndarray] = {}
+    parts: dict[str, tuple[np.ndarray, ...]] = {}  # numbers, whether runs failed, bars, whether lives don't end
     for row in rows:
         name = "\n".join(others_words[other](row[other]) for other in others if row[other] is not None)
-        numbers, failed = parts.setdefault(name, (np.full(shape, np.nan), np.zeros(shape, dtype=bool)))
-        bars.setdefault(name, np.full(shape, np.nan))
-        endless.setdefault(name, np.zeros(shape, dtype=bool))
+        empty = (np.full(shape, fill) for fill in (np.nan, False, np.nan, False))
+        numbers, failed, bars, endless = parts.setdefault(name, tuple(empty))
         place = tuple(places[row[field]] for (_, places), field in zip(axes, (y, x) if y else (x,), strict=True))
         failed[place] = row["status"] == FAILED
-        endless[name][place] = value in row.get("endless", ())
+        endless[place] = value in row.get("endless", ())
         if row["status"] == DONE and row.get(value) is not None:
             numbers[place] = factor * row[value] if abs(row[value]) > least else 0.0
-            bars[name][place] = factor * row.get(bar_column(value), math.nan)
+            bars[place] = factor * row.get(bar_column(value), math.nan)
     return Chart(
         plan.title,
         axis_label(plan.labels.get(value, value.replace("_", " ")), label),
         axes[-1][0],
         axes[0][0] if y else None,
-        [(name, *arrays) for name, arrays in parts.items()],
+        [(name, numbers, failed) for name, (numbers, failed, *_) in parts.items()],
         len(rows) - len(found),
         plan.case(plan.points[0]).problem,
         tuple(name for name in plan.fields if len(_different([point.values.get(name) for point in plan.points])) > 1),
         plan.outcomes[value].classes if value in plan.outcomes else {},
-        [*bars.values()] if any(bar_column(value) in row for row in rows) else [],
-        [*endless.values()] if value in plan.outcomes and plan.outcomes[value].is_life else [],
+        [bars for *_, bars, _ in parts.values()] if any(bar_column(value) in row for row in rows) else [],
+        [endless for *_, endless in parts.values()] if value in plan.outcomes and plan.outcomes[value].is_life else [],
     )
 
 
