@@ -221,7 +221,7 @@ def test_the_map_of_slip_regimes_is_a_plan() -> None:
 @pytest.mark.gate
 def test_the_example_of_figures_draws_them() -> None:
     names = run_python("figures.md")
-    assert drawn() == ["cycle.gif", "loops.pdf", "map.svg", "scar.pdf", "tractions.pdf"]
+    assert drawn() == ["loops.pdf", "map.svg", "scar.pdf", "tractions.pdf"]
     assert names["axes"].texts
     for kind in KINDS:
         assert f"`{kind}`" in page_text("figures.md"), kind
