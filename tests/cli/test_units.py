@@ -165,7 +165,9 @@ def plots(subject: str) -> list[str]:
     for kind, (_, _, allowed, sources, of_laminates) in KINDS.items():
         if not of_laminates and subject == ("a.h5" if "result" in sources else "life.h5"):
             states = "--states 2,3" if "states" in allowed and kind != "sketch" else ""
-            lines.append(f"plot {subject} {kind} -o {kind}.svg {states} {f'--csv {kind}.csv' if 'csv' in allowed else ''}")
+            lines.append(
+                f"plot {subject} {kind} -o {kind}.svg {states} {f'--csv {kind}.csv' if 'csv' in allowed else ''}"
+            )
     return lines
 
 
