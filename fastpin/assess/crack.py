@@ -17,8 +17,10 @@ from fastpin.errors import InputError
 from fastpin.model import Case, LoadHistory, Problem, angles, points
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth, law_of
 from fastpin.model.doubts import doubts_given
-from fastpin.model.growth import Nasgro, Walker, law_entries, law_words
-from fastpin.model.units import units
+from fastpin.model.growth import KnownLaw, Nasgro, Walker, law_entries
+from fastpin.model.keys import LAW
+from fastpin.model.unit_systems import SI
+from fastpin.model.units import in_units, system_words, units
 from fastpin.states.choice import missing_corners, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.margins import Margin, over_yield_words
@@ -150,6 +152,15 @@ def find(case: Case, held: Held | None, progress: Follow | None = None) -> crack
     return CrackStops.of(len(case.history), held.result.cycles, held.between).growth(case.crack, progress)
 
 
+def law_words(problem: Problem, law: KnownLaw) -> str:
+    """Return a law of growth and its constants in words. Constants with their default in SI units are left out."""
+    entries = law_entries(law) | ({} if problem.unit_system == SI else {"unit": law.unit})
+    entries = in_units(problem, entries, LAW)
+    names = ", ".join(f"{name} = {value:.6g}" for name, value in entries.items() if not isinstance(value, str))
+    source = f"; source: {law.source}" if law.source else ""
+    return f"{entries['law']}, {names} ({system_words(problem)}){source}"
+
+
 def crack_words(problem: Problem, crack: CrackGrowth) -> str:
     """Lengths, place, direction, law and residual stress of a crack that is to grow."""
     length = units(problem)["length"]
@@ -157,7 +168,7 @@ def crack_words(problem: Problem, crack: CrackGrowth) -> str:
     parts = [f"{length.text(crack.first)} to {length.text(crack.last)}", place]
     parts += [f"{math.degrees(crack.angle):.4g} deg from the radius"] if crack.angle else []
     parts += ["in the plate round the bush"] if crack.body == "seat" else []
-    parts += [law_words(law_of(problem, crack))]
+    parts += [law_words(problem, law_of(problem, crack))]
     return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
 
 

@@ -365,7 +365,8 @@ def fatigue_curve(found: damage.Fatigue) -> outputs.Curve:
 
     Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis.
     """
-    columns = {f"{found.criterion} [{found.unit}]": found.parameter}
+    unit = units(found.problem)[found.kind]
+    columns = {f"{found.criterion} [{unit.name}]": unit.factor * found.parameter}
     if found.plane is not None:
         columns["plane [deg]"] = np.degrees(found.plane)
     if found.life is not None:
@@ -376,7 +377,8 @@ def fatigue_curve(found: damage.Fatigue) -> outputs.Curve:
 def _by_angle(found: damage.Fatigue | damage.SpectrumDamage, columns: dict[str, np.ndarray]) -> outputs.Curve:
     """Return columns of points with their angles and depths, in the order of the angles."""
     angles = np.array([from_bottom(angle) for angle in found.theta.ravel().tolist()])
-    places = {"angle [deg]": angles, f"depth [{units(found.problem)['length'].name}]": found.depth}
+    length = units(found.problem)["length"]
+    places = {"angle [deg]": angles, f"depth [{length.name}]": length.factor * found.depth}
     order = np.argsort(angles, kind="stable")
     return outputs.Curve(
         {"body": found.body}, {name: np.ravel(each)[order] for name, each in (places | columns).items()}

@@ -11,6 +11,7 @@ from fastpin.model.assessment import ASSESSMENT_KEYS, MINER_RULES, FatigueAssess
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth, crack_from
 from fastpin.model.growth import Walker
 from fastpin.model.strength import LENGTHS, STRENGTH_KEYS, StrengthAssessment
+from fastpin.model.units import measures_of
 
 
 def read_assessment(
@@ -45,9 +46,10 @@ def read_crack(source: CaseText, section: Section, default: Mapping[str, Any] | 
     faults = len(source.placed)
     if section.value("law") is not None:
         values["law"] = read_law(source, section, "law") or Walker(1.0, 1.0)
+    length = measures_of(section.units, False)["length"].name
     for key in ("first", "last"):
         if key not in values:
-            section.report(f"{key} is missing: give the {key} length of the crack, m")
+            section.report(f"{key} is missing: give the {key} length of the crack, {length}")
     values = {"first": 1e-300, "last": 1e300, **values}
     harmless = {"first": 1e-300, "last": 1e300, "theta": None, "angle": 0.0, "body": "plate", "residual_stress": None}
     crack = section.build(crack_from, values, harmless)

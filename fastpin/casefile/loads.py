@@ -40,9 +40,9 @@ def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
         None if the history can't be used. The reason is reported.
     """
     section, contact = source.section("history"), source.root.value("contact")
-    basis: Basis = "per metre"
-    if isinstance(contact, dict) and ("load_parameter" in contact or "thickness" in contact):
-        basis = "dimensionless" if "load_parameter" in contact else "with thickness"
+    given = contact if isinstance(contact, dict) else {}
+    per_metre = "with thickness" if "thickness" in given else "per metre"
+    basis = Basis("dimensionless" if "load_parameter" in given else per_metre, source.units)
     if "load" in source.root and "csv" in section:
         source.report("[history]: give either csv or [[load]] blocks", "history", "csv")
         return None

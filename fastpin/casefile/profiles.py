@@ -128,8 +128,9 @@ WORD_KEYS = (*dict.fromkeys(key for word in WORDS.values() for key in word.keys)
 class _Reader:
     """Reads the profiles of a section, and reports their faults to it."""
 
-    def __init__(self, section: Section, folder: Path, quantity: ProfileKind, basis: Basis) -> None:
-        self._section, self._folder, self._quantity, self._basis = section, folder, quantity, basis
+    def __init__(self, section: Section, folder: Path, quantity: ProfileKind, dimensionless: bool = False) -> None:
+        self._section, self._folder, self._quantity = section, folder, quantity
+        self._basis = Basis("dimensionless" if dimensionless else "per metre", section.units)
 
     def profile(self, key: str) -> Profile | None:
         """The profile of a key; None if it is missing or wrong (reported)."""
@@ -225,10 +226,10 @@ def _is_file(value: object) -> bool:
     return isinstance(value, str) and bool(re.search(r"\.\s*[A-Za-z]\w*$", value))
 
 
-def read_friction(contact: Section, folder: Path, basis: Basis) -> float | Profile | None:
+def read_friction(contact: Section, folder: Path) -> float | Profile | None:
     """The coefficient of friction of [contact]; None if it is missing or wrong (reported)."""
     if isinstance(contact.value("friction"), (dict, list, str)):
-        return _Reader(contact, folder, "friction", basis).profile("friction")
+        return _Reader(contact, folder, "friction").profile("friction")
     return contact.number("friction")
 
 
@@ -237,7 +238,7 @@ def read_wear(section: Section, folder: Path, default: Mapping[str, Any]) -> Wea
 
     A coefficient of the section replaces all default ones.
     """
-    reader = _Reader(section, folder, "wear", "per metre")
+    reader = _Reader(section, folder, "wear")
     profiles = {key: reader.profile(key) for key in COEFFICIENTS if key in section}
     values = {key: value for key, value in default.items() if not (profiles and key in COEFFICIENTS)}
     values |= {key: section.value(key) for key in WEAR_KEYS if key in section}
@@ -252,8 +253,7 @@ def read_gap(section: Section, folder: Path, radius: float | None, dimensionless
 
     `radius` is that of the hole. None if it is unknown; the size of the gap is then not checked.
     """
-    basis: Basis = "dimensionless" if dimensionless else "per metre"
-    reader = _Reader(section, folder, "gap", basis)
+    reader = _Reader(section, folder, "gap", dimensionless)
     if section.present and not section.table:
         section.report("[gap]: gives no profile; the keys are hole and pin")
     found = {}

@@ -27,9 +27,11 @@ from fastpin.model import LOADS, SolveOptions, checks, synonyms
 from fastpin.model.assessment import check_assessment
 from fastpin.model.case import BESIDE, About, Case, check_arc, check_keep, check_wear
 from fastpin.model.fields import FIELDS
+from fastpin.model.keys import CASE
 from fastpin.model.laminate import LAMINATE_KEYS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
-from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
+from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, NO_UNITS, Problem, checked_thickness
+from fastpin.model.unit_systems import SI
 from fastpin.model.units import PER_THICKNESS
 from fastpin.model.wear import WEAR_KEYS
 
@@ -43,7 +45,11 @@ KEYS: dict[str, tuple[str, ...]] = {
     "dundurs": ("alpha", "beta", "nu_pin", "convention", "beta_star"),
     "contact": (
         *("plane", "hole_radius", "clearance", "load_parameter"),
-        *(name for name, each in FIELDS.items() if name not in ("hole_radius", "clearance") and not each.has_section),
+        *(
+            name
+            for name, each in FIELDS.items()
+            if name not in ("hole_radius", "clearance") and each.place == "[contact]"
+        ),
     ),
     "gap": GAP_KEYS,
     **{section: keys_of(kinds) for section, kinds in BODY_KINDS.items()},
@@ -55,7 +61,7 @@ KEYS: dict[str, tuple[str, ...]] = {
 }
 """Sections of a case file and their keys."""
 
-ROOT_KEYS = ("title", "materials")
+ROOT_KEYS = ("title", "units", "materials")
 """Keys before the first section."""
 
 T = TypeVar("T")
@@ -149,6 +155,12 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     Case or None
         None if the problem or the history is unusable.
     """
+    contact = source.root.value("contact")
+    is_dimensionless = isinstance(contact, dict) and "load_parameter" in contact
+    if is_dimensionless and source.root.value("units") not in (None, SI):
+        source.report(f"units: {NO_UNITS}", "units")
+    else:
+        source.to_si(CASE, isinstance(contact, dict) and "thickness" in contact)
     shared, tables = shared or SharedParts(), source.root.table
     shared.part("keys", source, _keys_of(tables), lambda: _check_keys(source))
     title = source.root.checked("title", checks.string) or ""
@@ -156,8 +168,8 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     materials = known_materials(source, folder)
     pair = shared.part("pair", source, _given_of_pair(tables, materials), lambda: read_pair(source, materials))
     problem = _problem(source, folder, pair, materials)
-    contact = tables.get("contact")  # its keys decide how loads are given
-    loads = repr([tables.get("load"), tables.get("history"), [*contact] if isinstance(contact, dict) else None])
+    given_units = [*contact] if isinstance(contact, dict) else None, source.units
+    loads = repr([tables.get("load"), tables.get("history"), given_units])
     history = shared.part("loads", source, loads, lambda: read_history(source, folder))
     if problem is not None and history is not None and problem.thickness is not None:
         whole, thickness = history, problem.thickness
@@ -318,11 +330,13 @@ def _problem(
     given_radius, radius = radius, radius or MOST_RADIUS
     unit = radius**2 / (1.0 if make is not Problem else pair.beta_star)
     dimensionless = make is not Problem
-    values["friction"] = read_friction(contact, folder, "dimensionless" if dimensionless else "per metre")
+    values["friction"] = read_friction(contact, folder)
     values["gap"] = read_gap(source.section("gap"), folder, given_radius, dimensionless)
     is_complete = None not in chosen.values()
     if is_complete:
         values |= {**chosen, **sizes, **thickness}
+        if source.units != SI:
+            values["unit_system"] = source.units
     harmless = {
         "hole_radius": MOST_RADIUS,
         "clearance": 0.0,

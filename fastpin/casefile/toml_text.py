@@ -18,7 +18,10 @@ from typing import Any, TypeVar
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import as_toml, choice, instance, number, shortened, why_unreadable
 from fastpin.model.inputs import HDF5_SIGNATURE, open_input
+from fastpin.model.keys import converted
 from fastpin.model.synonyms import closest, meant
+from fastpin.model.unit_systems import SI, checked_system
+from fastpin.model.units import measures_of
 
 MOST_BYTES = 4_000_000
 """Most bytes of a case file, a lug file, or a file of materials or outcomes. Python parses some 1 MB in a second.
@@ -133,6 +136,8 @@ class CaseText:
         Whether the text could be parsed. The tables then hold all values except the values on faulty lines.
     root : Section
         The keys before the first section, and all sections.
+    units : str
+        The system of units of the text, see :func:`fastpin.model.unit_systems.checked_system`.
 
     Raises
     ------
@@ -144,6 +149,7 @@ class CaseText:
         self.faults: list[tuple[int, str]] = []
         self.placed: list[tuple[KeyPath, str]] = []
         self.readable = True
+        self.units, self._given = SI, dict[str, Any]()
         if not isinstance(text, str):
             raise InputError("text", f"must be TOML text, not {as_toml(text)}")
         lines = text.replace("\r\n", "\n").split("\n")
@@ -191,7 +197,7 @@ class CaseText:
     def report(self, message: str, *place: str | int) -> None:
         """Add a fault, on the line that :meth:`line` gives for `place`."""
         self.placed.append((place, message))
-        self._add(self.line(*place), message)
+        self._add(self.line(*place), message + self._in_other_units(place, message))
         if len(self.faults) >= MOST_FAULTS:
             self._add(0, f"has {MOST_FAULTS} faults or more; reading ended there")
             raise TooManyFaultsError
@@ -250,6 +256,31 @@ class CaseText:
         if (line, message) not in self.faults:
             self.faults.append((line, message))
 
+    def to_si(self, kinds: Mapping[str, Any], whole: bool) -> None:
+        """Replace the numbers of the tables, which are in the units of the key ``units``, by numbers in SI units.
+
+        Parameters
+        ----------
+        kinds : mapping
+            The kind of each number, see :mod:`fastpin.model.keys`.
+        whole : bool
+            Whether forces are those of the whole thickness.
+        """
+        self.units = self.root.checked("units", checked_system) or SI
+        if self.units != SI:
+            self._given, ways = self.root.table, measures_of(self.units, whole)
+            tables = converted(self._given, kinds, lambda kind, number: ways[kind].in_si(number), fill=True)
+            self.root = Section(self, (), tables)
+
+    def _in_other_units(self, place: KeyPath, message: str) -> str:
+        """The end of a message that has numbers in SI units, while the text has them in other units."""
+        if self.units == SI:
+            return ""
+        given, used = (_value_at(table, place) for table in (self._given, self.root.table))
+        if isinstance(used, (int, float)) and (f"{used:g}" in message or as_toml(used) in message):
+            return "" if used == given else f"; in SI units: the file has {as_toml(given)}, in {self.units}"
+        return "; in SI units" if isinstance(used, (list, dict)) and used != given and "must" in message else ""
+
     def section(self, name: str, required: bool = False) -> Section:
         """The section [name], or an empty section if it is missing or not a table.
 
@@ -295,6 +326,11 @@ class Section:
     def name(self) -> str:
         """Name of the section, without brackets."""
         return str(self._place[0])
+
+    @property
+    def units(self) -> str:
+        """The system of units of the text. The values of the table are in SI units."""
+        return self._text.units
 
     def __contains__(self, key: str) -> bool:
         return key in self.table
@@ -391,6 +427,14 @@ class Section:
                 if error.field not in left:
                     return None
                 values[error.field] = left.pop(error.field)
+
+
+def _value_at(table: Any, place: KeyPath) -> Any:
+    """The value at a place of a table; None if there is none."""
+    for part in place:
+        is_there = part in table if isinstance(table, dict) else isinstance(table, list) and part in range(len(table))
+        table = table[part] if is_there else None
+    return table
 
 
 def written(name: str, value: object) -> str:
@@ -549,7 +593,7 @@ def _behind_value(value: str) -> str:
     if re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", value):
         return f"a number has a decimal point, {value.replace(',', '.')}"
     if re.fullmatch(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-z%/^0-9]+", value):
-        return f"must be a number without a unit, not {value}; SI units are meant"
+        return f"must be a number without a unit, not {value}; SI units are meant, or those of the key units"
     return f"must be one value, not {value}"
 
 

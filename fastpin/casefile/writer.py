@@ -70,7 +70,7 @@ def _contact(problem: Problem) -> Iterator[str]:
         yield f"clearance = {problem.clearance!r}"
     for name, field in FIELDS.items():
         value = getattr(problem, name)
-        if value is None or field.has_section or name in ("hole_radius", "clearance"):
+        if value is None or field.place != "[contact]" or name in ("hole_radius", "clearance"):
             continue
         if isinstance(value, Profile):
             value = value.toml()

@@ -204,7 +204,7 @@ def _draw(options: argparse.Namespace, whole: studies.plan.Plan, rows: list[dict
         if found:
             problem = plan.case(plan.points[0]).problem
             figures.sweep.plot_envelope(found, options.plot, title, problem=problem, varied=plan.fields)
-        missing = {"": len(rows) - sum(curve[report.sweep.BYPASS].size for curve in found)}
+        missing = {"": len(rows) - sum(len(next(iter(curve.columns.values()))) for curve in found)}
     else:
         charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]
         figures.plot_sweep(charts if len(charts) > 1 else charts[0], options.plot, title)

@@ -103,7 +103,12 @@ class Fatigue(ReadOnly):
     @property
     def unit(self) -> str:
         """Unit of the parameter: "rad" or "Pa", or that of a dimensionless problem, such as "F/R"."""
-        return units_per_thickness(self.problem)[FATIGUE_CRITERIA[self.criterion].kind]
+        return units_per_thickness(self.problem)[self.kind]
+
+    @property
+    def kind(self) -> str:
+        """Kind of the parameter, a key of :func:`fastpin.model.units.units`."""
+        return FATIGUE_CRITERIA[self.criterion].kind
 
     @property
     def margin(self) -> np.ndarray | None:

@@ -27,7 +27,7 @@ from fastpin.figures.style import COLOURS, MAX_NAMED, caption, draw_grid, line, 
 from fastpin.model import angles, checks
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.points import EDGES, Body, edge_body
-from fastpin.model.units import scaled, units
+from fastpin.model.units import units
 from fastpin.states.choice import span_of
 
 PLANES = 40
@@ -180,7 +180,8 @@ def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
     axes = sheet.axes
     sheet.grid()
     top, handles = axes[0, 0], list[Line2D]()
-    factor, unit = scaled([one.hot_spot.parameter for one in found], found[0].unit)
+    of_parameter = units(found[0].problem)[found[0].kind]
+    factor, unit = of_parameter.scale([one.hot_spot.parameter for one in found])
     names = [edge_body(one.problem, one.body) for one in found]
     for place, one in enumerate(found):
         handles += _draw_parameter(top, one, factor, place, names[place] if len(found) > 1 else "")

@@ -151,16 +151,16 @@ plot_gap = plotter("plot_gap", gap_of)
 
 
 def profile_curve(problem: Problem) -> Curve:
-    """The profiles of a problem that are given, in SI units, over the angle from the bottom, deg, increasing."""
+    """The profiles of a problem that are given, over the angle from the bottom, deg, increasing."""
     given, radius = problem.profiles, problem.hole_radius
     notes = np.concatenate([profile.angles(0, radius) for profile in given.values()])
     theta = np.r_[np.linspace(-np.pi, np.pi, LOOKED_AT), notes - BESIDE, notes + BESIDE]
     angle = np.array([angles.from_bottom(each) for each in theta.tolist()])
     order = np.argsort(angle)
-    length = units(problem)["displacement"].name
+    length = units(problem)["displacement"]
     columns = {"angle [deg]": angle[order]}
     for name, profile in problem.gap.given.items():
-        columns[f"gap of the {name} [{length}]"] = profile.at(theta[order], radius)
+        columns |= length.column(f"gap of the {name}", profile.at(theta[order], radius))
     if isinstance(problem.friction, Profile):
         columns["friction"] = problem.friction_at(theta[order])
     return Curve({}, columns)
@@ -176,7 +176,7 @@ def _draw_gap(look: Look, problem: Problem, curve: Curve) -> Sheet:
     sheet.grid()
     if gaps:
         panel = sheet.axes[0, 0]
-        factor, name = units(problem)["displacement"].scale(np.concatenate([*gaps.values()]).tolist())
+        factor, name = units(problem)["displacement"].printed.scale(np.concatenate([*gaps.values()]).tolist())
         for place, gap in enumerate(gaps.values()):
             panel.plot(angle, factor * gap, **line(place, place))
         draw_zero(panel)

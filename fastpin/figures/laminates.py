@@ -20,7 +20,7 @@ from fastpin.figures.style import ANGLE, angle_axis, line, quantity, short
 from fastpin.model import Case, Problem, StrengthAssessment, angles, checks
 from fastpin.model.laminate import Laminate, in_axes
 from fastpin.model.ply import PlyCriterion
-from fastpin.model.units import PASCAL, units
+from fastpin.model.units import Unit, units
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 
@@ -43,10 +43,11 @@ def stiffness_of(joint: Problem | Case | Result) -> Plot:
     """
     problem = problem_of(joint)
     plate = laminate_of(problem)
-    curve = stiffness_curve(plate, "1/beta*" if problem.dimensionless else PASCAL.name)
+    unit = units(problem)["modulus"]
+    curve = stiffness_curve(plate, unit)
     words = "Young's modulus and shear modulus of the laminate by direction"
     return Plot(
-        lambda look: _draw_stiffness(look, problem, plate, curve),
+        lambda look: _draw_stiffness(look, unit, plate, curve),
         partial(write_csv, [curve]),
         f"Polar charts of {words}.",
         f"{words}. Thin lines show the directions of the plies.",
@@ -56,22 +57,21 @@ def stiffness_of(joint: Problem | Case | Result) -> Plot:
 plot_stiffness = plotter("plot_stiffness", stiffness_of)
 
 
-def stiffness_curve(plate: Laminate, unit: str) -> Curve:
+def stiffness_curve(plate: Laminate, unit: Unit) -> Curve:
     """Young's modulus and the shear modulus by the direction, deg from the bottom, in this `unit`."""
     degrees = np.linspace(-180.0, 180.0, 361)  # one direction each degree
     turned = in_axes(plate.matrix, np.radians(degrees - 90.0))
-    return Curve(
-        {}, {"direction [deg]": degrees, f"E [{unit}]": 1.0 / turned[:, 0, 0], f"G [{unit}]": 1.0 / turned[:, 2, 2]}
-    )
+    moduli = {name: unit.factor / turned[:, k, k] for name, k in (("E", 0), ("G", 2))}
+    return Curve({}, {"direction [deg]": degrees, **{f"{name} [{unit.name}]": each for name, each in moduli.items()}})
 
 
-def _draw_stiffness(look: Look, problem: Problem, plate: Laminate, curve: Curve) -> Sheet:
+def _draw_stiffness(look: Look, unit: Unit, plate: Laminate, curve: Curve) -> Sheet:
     sheet = look.sheet([0.5 * look.width], columns=2, extra=1.1, subplot_kw={"projection": "polar"})
     degrees, *moduli = curve.columns.values()
     along, words = np.radians(degrees), ("Young's modulus E", "shear modulus G")
     directions = plate.axis + np.radians(sorted({angle for _, angle in plate.plies}))
     for place, (values, panel) in enumerate(zip(moduli, sheet.axes[0], strict=True)):
-        factor, label = (1.0, "1/β*") if problem.dimensionless else PASCAL.scale([float(values.max())])
+        factor, label = unit.printed.scale([float(values.max())])
         panel.set_theta_zero_location("S")
         panel.plot(along, factor * values, **line(place))
         top = 1.05 * factor * float(values.max())
@@ -82,7 +82,7 @@ def _draw_stiffness(look: Look, problem: Problem, plate: Laminate, curve: Curve)
         panel.set_thetagrids(range(0, 360, 45), [f"{from_label(angle)}°" for angle in range(0, 360, 45)], fontsize=7.0)
         panel.tick_params(axis="y", labelsize=6.5)
         panel.grid(color="0.88", linewidth=0.6)
-        panel.set_xlabel(quantity(words[place], label))
+        panel.set_xlabel(quantity(words[place], label.replace("beta", "β")))
     if directions.size:
         sheet.legend([Line2D([], [], color="0.6", linewidth=0.8, label="directions of the plies")], 1)
     sheet.head(look.title, caption=f"{plate.label}, {plate.direction_words}")

@@ -65,7 +65,7 @@ def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Shee
     sheet.grid()
     unit, lines = units(states[0].problem)["traction"], state_lines(states)
     column, before = f"hoop stress [{unit.name}]", f"hoop stress of the assembly [{unit.name}]"
-    factor, label = unit.scale([float(np.abs(curve[column]).max()) for curve in curves])
+    factor, label = unit.printed.scale([float(np.abs(curve[column]).max()) for curve in curves])
     open_dots = False
     for body, panel in zip(bodies, axes[:, 0], strict=True):
         mine = [curve for curve in curves if curve.parameters["body"] == body]
@@ -75,7 +75,14 @@ def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Shee
             open_dots = open_dots or not peak.resolved
             face = style["color"] if peak.resolved else "white"
             angle = math.degrees(peak.angle) + 90.0
-            panel.plot(angle, factor * peak.value, "o", markersize=4.0, color=style["color"], markerfacecolor=face)
+            panel.plot(
+                angle,
+                factor * unit.factor * peak.value,
+                "o",
+                markersize=4.0,
+                color=style["color"],
+                markerfacecolor=face,
+            )
         if before in mine[0].columns:
             panel.plot(mine[0]["angle [deg]"], factor * mine[0][before], color="0.4", linestyle=":", linewidth=1.2)
         draw_zero(panel)
@@ -123,10 +130,12 @@ def _draw_profile(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> S
     sheet = look.sheet([2.0, 2.0], columns=2, extra=1.5)
     axes = sheet.axes
     sheet.grid()
-    radius = states[0].problem.hole_radius
+    unit = units(states[0].problem)
+    radius = unit["length"].factor * states[0].problem.hole_radius
     depth, *columns = curves[0].columns
-    unit = units(states[0].problem)["traction"]
-    factor, label = unit.scale([float(np.abs(curve[name]).max()) for curve in curves for name in columns])
+    factor, label = unit["traction"].printed.scale(
+        [float(np.abs(curve[name]).max()) for curve in curves for name in columns]
+    )
     for name, panel in zip(columns, axes.flat, strict=True):
         for curve, style in zip(curves, state_lines(states), strict=True):
             panel.plot(curve[depth] / radius, factor * curve[name], **style)
@@ -196,13 +205,14 @@ def _has_point(state: State) -> bool:
 def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: str) -> Sheet:
     sheet = look.sheet([0.9 * look.width], extra=0.0)
     panel = sheet.axes[0, 0]
-    unit, radius = units(state.problem)["traction"], state.problem.hole_radius
+    unit = units(state.problem)
+    radius = unit["length"].factor * state.problem.hole_radius
     distance, angle, value = curves[0].columns
     # The infinite stress at a point force at the pin's centre does not set the colours.
     nearest = 0.3 * radius if _has_point(state) else 0.0
     every = np.concatenate([curve[value][curve[distance] >= nearest] for curve in curves])
     low, high = np.quantile(every, [1.0 - FARTHEST, FARTHEST])
-    factor, label = (1.0, "") if component == UTILIZATION else unit.scale([low, high])
+    factor, label = (1.0, "") if component == UTILIZATION else unit["traction"].printed.scale([low, high])
     signed = low < -0.02 * max(high, -low)
     levels = _levels(factor * low, factor * high)
     beyond = "both" if factor * min(float(curve[value].min()) for curve in curves) < levels[0] else "max"

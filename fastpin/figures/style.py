@@ -22,7 +22,7 @@ from matplotlib.ticker import MaxNLocator
 from fastpin.assess.outputs import ROUNDING
 from fastpin.bodies.bushing import STUCK
 from fastpin.model import Laminate, Material, Problem, Profile, checks, loads, points
-from fastpin.model.units import PASCAL, Unit, acting_loads, units
+from fastpin.model.units import Unit, acting_loads, units
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 from fastpin.storage.files import replacing
@@ -184,7 +184,7 @@ CHARACTER = 0.0072
 
 def shown_unit(unit: str) -> str:
     """A unit as figures show it: with the letters for micro and beta."""
-    unit = unit.replace("beta*", "β*").replace("^2", "²").replace("^3", "³").replace("sqrt(m)", "√m")
+    unit = re.sub(r"sqrt\((\w+)\)", r"√\1", unit.replace("beta*", "β*").replace("^2", "²").replace("^3", "³"))
     return f"µ{unit[1:]}" if unit[:1] == "u" and len(unit) > 1 else unit
 
 
@@ -332,5 +332,5 @@ def _material(material: Material, problem: Problem) -> str:
         return checks.shortened(material.label)
     if material.label:
         return checks.shortened(material.label)
-    modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, PASCAL)
+    modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, units(problem)["modulus"])
     return f"E = {modulus}, ν = {material.nu:.{DIGITS}g}"

@@ -27,8 +27,8 @@ from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, Line, caption, line, quantity, shown_label, spread, wrapped
 from fastpin.model.checks import instances
 from fastpin.model.problem import Problem
-from fastpin.model.units import PASCAL
-from fastpin.report.sweep import BEARING, BYPASS, Axis, Chart
+from fastpin.model.units import scaled
+from fastpin.report.sweep import Axis, Chart
 
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 _UNSURE: Any = {
@@ -529,12 +529,13 @@ plot_envelope = plotter("plot_envelope", envelope_of)
 def _draw_envelope(look: Look, curves: Sequence[Curve], parameters: str) -> Sheet:
     sheet = look.sheet([0.6 * look.width], extra=0.8)
     (panel,) = sheet.axes[0]
-    largest = [float(np.abs(curve[name]).max()) for curve in curves for name in (BYPASS, BEARING)]
-    factor, label = PASCAL.scale(largest)
+    bypass, bearing = curves[0].columns
+    largest = [float(np.abs(curve[name]).max()) for curve in curves for name in (bypass, bearing)]
+    factor, label = scaled(largest, bypass.partition("[")[2].rstrip("]"))
     handles = []
     for place, curve in enumerate(curves):
         (drawn,) = panel.plot(
-            factor * curve[BYPASS], factor * curve[BEARING], marker=MARKERS[place], markersize=3.5,
+            factor * curve[bypass], factor * curve[bearing], marker=MARKERS[place], markersize=3.5,
             label=shown_label(str(curve.parameters.get("case", ""))), **line(place),
         )  # fmt: skip
         handles.append(drawn)

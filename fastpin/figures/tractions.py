@@ -107,7 +107,8 @@ def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve], sketch: bool
 def _draw_curves(axes: Sequence[Axes], states: DrawnStates, curves: Sequence[Curve], lines: Sequence[Line]) -> None:
     """Draw the pressure and, with friction, the shear traction of all states, with the bands of their bars if any."""
     problem = states[0].problem
-    factor, unit = units(problem)["traction"].scale([float(state.pressure.max()) for state in states])
+    of_traction = units(problem)["traction"]
+    factor, unit = of_traction.printed.scale([of_traction.factor * float(state.pressure.max()) for state in states])
     for state, curve, style in zip(states, curves, lines, strict=True):
         angle, pressure, shear, *bars = curve.columns.values()
         for panel, traction, bar in zip(axes, (pressure, shear), bars, strict=False):
@@ -138,13 +139,13 @@ def traction_curves(states: DrawnStates, bars: bool = False) -> list[Curve]:
     InputError
         If `bars` are asked for, and a state has none.
     """
-    unit, frame, curves = units(states[0].problem)["traction"].name, Frame(states), []
+    unit, frame, curves = units(states[0].problem)["traction"], Frame(states), []
     for state in states:
         angle, pressure, shear = frame.curves(state)
-        columns = {"angle [deg]": angle, f"pressure [{unit}]": pressure, f"shear [{unit}]": shear}
+        columns = {"angle [deg]": angle} | unit.column("pressure", pressure) | unit.column("shear", shear)
         if bars:
             of_pressure, of_shear = _bars_of_curves(state, angle)
-            columns |= {f"pressure bar [{unit}]": of_pressure, f"shear bar [{unit}]": of_shear}
+            columns |= unit.column("pressure bar", of_pressure) | unit.column("shear bar", of_shear)
         curves.append(Curve({"load point": load_point(state)}, columns))
     return curves
 

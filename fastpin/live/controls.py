@@ -17,13 +17,10 @@ from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
 from fastpin.model.profile_terms import Term
-from fastpin.model.units import DEGREE, PASCAL, Unit, units
+from fastpin.model.units import DEGREE, PLAIN, Unit, units
 
 OWN = "other"
 """The choice of a material that is not in :data:`fastpin.MATERIALS`: its E and nu are given."""
-
-NUMBER = Unit(1.0, "")
-"""The unit of a plain number."""
 
 RIGID = "rigid"
 """The choice of a rigid material."""
@@ -112,7 +109,7 @@ def load_controls(problem: Problem, scales: ControlScales) -> list[dict[str, Any
 
 def problem_controls(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:
     """The fields of the problem that can be changed: their group, value, unit, and ends of the slider or choices."""
-    unit = units(problem) | {"modulus": Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL}
+    unit = units(problem)
     misfit = MISFITS * scales.misfit
     return [
         *_friction(problem, scales),
@@ -217,7 +214,7 @@ def _friction(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:
     """The controls of the friction: its coefficient, or the largest one and whether it varies along the rim."""
     varies = isinstance(problem.friction, Profile)
     name = "most_friction" if varies else "friction"
-    found = [_slider("contact", name, problem.most_friction, NUMBER, 0.0, MOST_DRY)]
+    found = [_slider("contact", name, problem.most_friction, PLAIN, 0.0, MOST_DRY)]
     if scales.has_varying_friction:
         found.append(_chooser("contact", "friction_along", "case" if varies else "uniform", FRICTION_ALONG))
     return found
@@ -272,7 +269,7 @@ def _material(body: str, material: Material, unit: Unit) -> list[dict[str, Any]]
     found = [_chooser(body, f"{body}_material", chosen, (*MATERIALS, *([RIGID] * (body != "bush")), OWN))]
     if not material.is_rigid:
         found.append(_slider(body, f"{body}_E", material.E, unit, 0.1 * material.E, 3.0 * material.E))
-        found.append(_slider(body, f"{body}_nu", material.nu, NUMBER, 0.0, 0.5))
+        found.append(_slider(body, f"{body}_nu", material.nu, PLAIN, 0.0, 0.5))
     return found
 
 

@@ -33,7 +33,8 @@ from fastpin.model.points import owner_of
 from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import MOST_ANGLE
-from fastpin.model.units import units
+from fastpin.model.unit_systems import SI
+from fastpin.model.units import system_words, units
 from fastpin.model.wear import Wear
 
 STIFF = 1e9
@@ -82,7 +83,7 @@ def doubts(
         if isinstance(material, Laminate):
             pairs += _of_laminate(material, problem)
         elif not material.is_rigid and material.is_isotropic:
-            pairs += _of_material(name, material, has_units)
+            pairs += _of_material(name, material, problem)
     if options is not None and options.arc is not None:
         angle = max(options.arc, key=abs)
         if abs(angle) > MOST_ANGLE:
@@ -109,8 +110,10 @@ def wear_doubts(problem: Problem, wear: Wear) -> list[InputWarning]:
     # severe wear. The hardness of metals is some 1/30 of their modulus, so a coefficient of beta* makes this part 0.1.
     if not _has_units(problem) or most <= problem.surfaces.beta_star:
         return []
+    unit = units(problem)["wear coefficient"]
     hint = "numbers in 1/MPa are to be multiplied by 1e-6, numbers in mm^3/(N m) by 1e-9"
-    return [InputWarning("coefficient", f"{most:.3g} 1/Pa is more than any surface wears; {hint}")]
+    hint = _hint(problem, "wear coefficients", "wear coefficient", f"; {hint}")
+    return [InputWarning("coefficient", f"{unit.text(most, 3)} is more than any surface wears; {hint}")]
 
 
 def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[np.ndarray]) -> list[InputWarning]:
@@ -131,14 +134,14 @@ def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[
     peak = max((float(np.max(pressure, initial=0.0)) for pressure in distinct.values()), default=0.0)
     strain = problem.surfaces.beta_star * peak  # linear elasticity fails above 0.05
     if strain > 0.05 and _has_units(problem):
-        found.append(f"contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?")
+        words = f"contact strains of about {strain:.2g} are beyond linear elasticity"
+        found.append(f"{words}; are all values in {system_words(problem)}?")
     for body, material in (("pin", problem.pair.pin), ("plate", problem.surfaces.plate)):
         strength = material.known_yield_strength
         if strength is not None and peak > strength >= LEAST_STRENGTH * material.E:
-            found.append(
-                f"{_mega(peak)} is above the yield strength {_mega(strength)} of the {owner_of(problem, body)}; "
-                "fastpin is elastic, but a real contact yields there"
-            )
+            words = f"{_stress(problem, peak)} is above the yield strength {_stress(problem, strength)} of the"
+            words = f"{words} {owner_of(problem, body)}; fastpin is elastic, but a real contact yields there"
+            found.append(words)
     return [InputWarning("peak pressure", words) for words in found]
 
 
@@ -159,7 +162,8 @@ def yield_doubt(problem: Problem, edge: str, stress: float, where: str) -> Input
         return None
     return InputWarning(
         "von Mises stress",
-        f"{_mega(stress)} {words}, {where}, is above the yield strength {_mega(strength)} of the {name}; "
+        f"{_stress(problem, stress)} {words}, {where}, is above the yield strength {_stress(problem, strength)} of the "
+        f"{name}; "
         f"fastpin is elastic, but a real {name} yields there",
     )
 
@@ -201,14 +205,25 @@ def _short(value: float) -> str:
     return f"{value / 10.0**power:.6g}" + (f"e{power}" if power else "")
 
 
+def _text(problem: Problem, kind: str, value: float) -> str:
+    """A value with the unit in which it is printed and read, without a prefix."""
+    unit = units(problem)[kind]
+    return f"{_short(float(f'{unit.factor * value:.12g}'))} {unit.name}"
+
+
+def _hint(problem: Problem, words: str, kind: str, meant: str = "") -> str:
+    """The unit of a kind of quantity, and in SI units what was `meant`, or an example."""
+    return f"{words} are in {units(problem)[kind].name}{meant if problem.unit_system == SI else ''}"
+
+
 def _meant(value: float, unit: str, factor: float) -> str:
     """The question whether a number was meant in another unit. It is rounded as one would write it."""
     rounded = float(f"{value:.3g}")
-    return f"did you mean {_short(rounded)} {unit}, which is {_short(factor * rounded)}?"
+    return f"; did you mean {_short(rounded)} {unit}, which is {_short(factor * rounded)}?"
 
 
-def _mega(stress: float) -> str:
-    return f"{stress / 1e6:.4g} MPa"
+def _stress(problem: Problem, stress: float) -> str:
+    return f"{stress / 1e6:.4g} MPa" if problem.unit_system == SI else units(problem)["traction"].text(stress, 4)
 
 
 def _of_contact(problem: Problem) -> Iterator[Doubt]:
@@ -220,7 +235,8 @@ def _of_contact(problem: Problem) -> Iterator[Doubt]:
         words = f"{friction:g} is above 2, more than dry metals have"
         yield "friction", f"{words}; did you mean {percent:g} %, which is {percent / 100:g}?"
     if not problem.dimensionless and problem.clearance > 0.5 * problem.hole_radius:
-        words = f"{_short(problem.clearance)} is more than half of the hole radius {_short(problem.hole_radius)}"
+        size, radius = (_text(problem, "length", each) for each in (problem.clearance, problem.hole_radius))
+        words = f"{size} is more than half of the hole radius {radius}"
         yield "clearance", f"{words}; clearance is the hole radius minus the pin radius"
     if not problem.pair.plate.is_isotropic and laminate is not None and not laminate.is_isotropic_contact:
         most = math.sqrt(max((0.5 * problem.surfaces.beta_star / abs(laminate.delta)) ** 2 - 1.0, 0.0))
@@ -265,48 +281,50 @@ def _of_laminate(laminate: Laminate, problem: Problem) -> Iterator[Doubt]:
         yield "layup", f"{words}; angles of plies are in degrees"
     thickness = problem.thickness  # that of the stack may differ by 1 %, the rounding of the plies
     if thickness is not None and laminate.plies and abs(laminate.thickness - thickness) > 0.01 * thickness:
-        stack = _short(float(f"{laminate.thickness:.6g}"))
-        words = f"{_short(thickness)} m is not that of the stack of plies, {stack} m"
+        stack = _text(problem, "length", float(f"{laminate.thickness:.6g}"))
+        words = f"{_text(problem, 'length', thickness)} is not that of the stack of plies, {stack}"
         yield "thickness", f"{words}; loads are divided by the first"
     for ply in dict.fromkeys(ply for ply, _ in laminate.plies):
         for field, value in {} if ply.strengths is None else ply.strengths.entries().items():
             if _has_units(problem) and value < LEAST_STRENGTH * ply.E2:
-                words = f"{_short(value)} Pa of a ply is very small; stresses are in Pa"
-                yield field, f"{words}; {_meant(value, 'MPa', 1e6)}"
+                hint = _hint(problem, "stresses", "traction", _meant(value, "MPa", 1e6))
+                yield field, f"{_text(problem, 'traction', value)} of a ply is very small; {hint}"
 
 
-def _of_material(name: str, material: Material, has_units: bool) -> Iterator[Doubt]:
+def _of_material(name: str, material: Material, problem: Problem) -> Iterator[Doubt]:
     """Doubts about an elastic material. Stiff solids have nu from 0.05, as beryllium, to 0.46; indium has 0.45."""
     nu = material.nu  # 0 and 0.5 themselves are chosen on purpose
     if 0.0 < nu < 0.05:
         yield "nu", f"{nu:g} of the {name} is very small; metals have 0.25 to 0.45"
-    if not has_units:
+    if not _has_units(problem):
         return
     if 0.46 < nu < 0.5 and material.E >= STIFF:
         yield "nu", f"{nu:g} of the {name} is unusual for a stiff body; metals have 0.25 to 0.45"
     least, ultimate = material.known_yield_strength, material.ultimate_strength
     if least is not None and ultimate is not None and ultimate < least:
-        words = f"{_short(ultimate)} Pa of the {name} is less than its yield strength of {_short(least)} Pa"
-        yield "ultimate_strength", words
+        strength, limit = (_text(problem, "traction", each) for each in (ultimate, least))
+        yield "ultimate_strength", f"{strength} of the {name} is less than its yield strength of {limit}"
     strengths = ({} if material.fatigue is None else material.fatigue.given()) | material.strengths
     limits = ("fatigue_strength", "shear_fatigue_strength", "bending_limit", "torsion_limit", "limit_range")
     for field in (*STRENGTHS, *limits):  # the constants that are stresses
         if field in strengths and (value := strengths[field]) < LEAST_STRENGTH * material.E:
-            words = f"{_short(value)} Pa of the {name} is very small; stresses are in Pa"
-            yield field, f"{words}; {_meant(value, 'MPa', 1e6)}"
+            hint = _hint(problem, "stresses", "traction", _meant(value, "MPa", 1e6))
+            yield field, f"{_text(problem, 'traction', value)} of the {name} is very small; {hint}"
     law = material.growth
     if law is None:
         return
     for field in ("threshold_range", "toughness", "unit"):
         value = getattr(law, field)
         if value is not None and 0.0 < value < 1e3:  # a thousandth of the threshold of metals
-            words = f"{_short(value)} Pa sqrt(m) of the {name} is very small"
-            yield f"growth.{field}", f"{words}; {_meant(value, 'MPa sqrt(m)', 1e6)}"
+            words = f"{_text(problem, 'stress intensity', value)} of the {name} is very small"
+            meant = _meant(value, "MPa sqrt(m)", 1e6) if problem.unit_system == SI else ""
+            yield f"growth.{field}", f"{words}{meant}"
     power = law.n if isinstance(law, Nasgro) else law.m
     rate = math.log10(law.C) + power * math.log10(1e7 / law.unit)
     if not -12.0 < rate < -4.0:  # the powers of ten, m, between which metals grow in this cycle
         words = f"gives 1e{rate:.3g} m per cycle of 10 MPa sqrt(m) in the {name}"
-        yield "growth.C", f"{words}; C is the growth under the range unit, in m per cycle"
+        length = units(problem)["length"].name
+        yield "growth.C", f"{words}; C is the growth under the range unit, in {length} per cycle"
 
 
 def _of_sizes(problem: Problem) -> Iterator[Doubt]:
@@ -314,16 +332,18 @@ def _of_sizes(problem: Problem) -> Iterator[Doubt]:
     radius, clearance, bush = problem.hole_radius, problem.clearance, problem.plate_body.bush
     tightest = 0.02  # interference in parts of the radius above which a body yields
     if radius > LARGEST_HOLE and _softest_and_stiffest(problem)[0][1] >= STIFF:
-        words = f"{_short(radius)} m is larger than any pin; lengths are in m"
-        yield "hole_radius", f"{words}; {_meant(radius, 'mm', 1e-3)}"
+        hint = _hint(problem, "lengths", "length", _meant(radius, "mm", 1e-3))
+        yield "hole_radius", f"{_text(problem, 'length', radius)} is larger than any pin; {hint}"
     if problem.thickness is not None and problem.thickness > 50.0 * radius:  # such a long pin bends
-        words = f"{_short(problem.thickness)} m is more than 50 hole radii"
-        yield "thickness", f"{words}; lengths are in m: 5 mm is 5e-3"
+        words = f"{_text(problem, 'length', problem.thickness)} is more than 50 hole radii"
+        yield "thickness", f"{words}; {_hint(problem, 'lengths', 'length', ': 5 mm is 5e-3')}"
     if clearance < -tightest * radius:
         words = f"the interference is {-100.0 * clearance / radius:.3g} % of the hole radius"
         yield "clearance", f"{words}; metals yield at 0.5 %"
     if bush is not None and bush.interference > tightest * bush.outer_radius:
-        words = f"{_short(bush.interference)} m is {100.0 * bush.interference / bush.outer_radius:.3g} %"
+        words = (
+            f"{_text(problem, 'length', bush.interference)} is {100.0 * bush.interference / bush.outer_radius:.3g} %"
+        )
         yield "interference", f"{words} of the outer radius of the bush; metals yield at 0.5 %"
 
 
@@ -331,14 +351,16 @@ def _of_moduli(problem: Problem) -> Iterator[Doubt]:
     """Doubts about moduli that do not fit together. Steel and rubber differ by a factor of 2e5."""
     (soft, least), (stiff, most) = _softest_and_stiffest(problem)
     if most > STIFFEST and SOFTEST <= least <= STIFFEST:
-        yield "E", f"{_beyond_diamond(stiff, most)}; a body that does not deform is rigid"
+        yield "E", f"{_beyond_diamond(problem, stiff, most)}; a body that does not deform is rigid"
     elif most > 1e6 * least:
-        words = f"{_short(least)} Pa of the {soft} and {_short(most)} Pa of the {stiff} differ by more than"
-        yield "E", f"{words} a factor 1,000,000; moduli are in Pa: 69 GPa is 69e9"
+        low, high = (_text(problem, "modulus", each) for each in (least, most))
+        words = f"{low} of the {soft} and {high} of the {stiff} differ by more than a factor 1,000,000"
+        yield "E", f"{words}; {_hint(problem, 'moduli', 'modulus', ': 69 GPa is 69e9')}"
 
 
-def _beyond_diamond(name: str, modulus: float) -> str:
-    return f"{_short(modulus)} Pa of the {name} is stiffer than diamond; moduli are in Pa: 69 GPa is 69e9"
+def _beyond_diamond(problem: Problem, name: str, modulus: float) -> str:
+    hint = _hint(problem, "moduli", "modulus", ": 69 GPa is 69e9")
+    return f"{_text(problem, 'modulus', modulus)} of the {name} is stiffer than diamond; {hint}"
 
 
 def _softest_and_stiffest(problem: Problem) -> tuple[tuple[str, float], tuple[str, float]]:
@@ -366,8 +388,8 @@ def _of_loads(problem: Problem, largest: dict[str, float]) -> Iterator[Doubt]:
     for name in ("ux", "uy"):
         shift = abs(largest.get(name, 0.0))
         if shift - free > 0.05 * problem.hole_radius:  # a strain of that size
-            words = f"{_short(largest[name])} m is {shift / problem.hole_radius:.2g} hole radii"
-            yield name, f"{words}; lengths are in m: 1 mm is 1e-3"
+            words = f"{_text(problem, 'displacement', largest[name])} is {shift / problem.hole_radius:.2g} hole radii"
+            yield name, f"{words}; {_hint(problem, 'lengths', 'length', ': 1 mm is 1e-3')}"
     strains = _strains(problem, largest)
     if not strains:
         return
@@ -376,16 +398,17 @@ def _of_loads(problem: Problem, largest: dict[str, float]) -> Iterator[Doubt]:
     if strains[name] > MOST_STRAIN and least < SOFTEST:
         # A modulus below 2e3 is probably in GPa, one above in MPa: no solid has more than 1,300 GPa.
         meant = _meant(least, "GPa", 1e9) if least < 2e3 else _meant(least, "MPa", 1e6)
-        yield "E", f"{_short(least)} Pa of the {soft} is softer than rubber; moduli are in Pa; {meant}"
+        words = f"{_text(problem, 'modulus', least)} of the {soft} is softer than rubber"
+        yield "E", f"{words}; {_hint(problem, 'moduli', 'modulus', meant)}"
     elif strains[name] > MOST_STRAIN:
         kind = LOAD_KIND[name]
-        printed = units(problem)[kind]
+        printed = units(problem)[kind].name
         hint = f"{kind}s are in" if problem.thickness else f"{kind}s are per thickness, in"
-        hint = "stresses are in Pa" if kind == "traction" else f"{hint} {printed.name}"
-        words = f"{_short(printed.factor * largest[name])} {printed.name} strains the bodies by {strains[name]:.2g}"
+        hint = f"stresses are in {printed}" if kind == "traction" else f"{hint} {printed}"
+        words = f"{_text(problem, kind, largest[name])} strains the bodies by {strains[name]:.2g}"
         yield name, f"{words}, far beyond linear elasticity; {hint}"
     elif strains[name] < LEAST_STRAIN and most > STIFFEST:
-        yield "E", _beyond_diamond(soft, least)
+        yield "E", _beyond_diamond(problem, soft, least)
     elif least >= SOFTEST:
         yield from _of_small_loads(problem, largest, name, strains[name])
 
@@ -401,13 +424,16 @@ def _of_small_loads(problem: Problem, largest: dict[str, float], name: str, stra
     is_small = 0.0 < strain < LEAST_STRAIN and bearing < (3e6 if thickness is None else 1e6) and force != 1.0
     is_alone = all(LOAD_KIND[other] == "force" for other, load in largest.items() if load)
     if is_small and is_alone and not problem.is_gripped and radius <= LARGEST_HOLE:
-        unit, hint = units(problem)["force"], "forces are in N: 1 kN is 1e3"
+        hint = _hint(problem, "forces", "force", ": 1 kN is 1e3")
         if thickness is None:
-            hint = "forces are per thickness, in N/m: 1 N/mm is 1e3; divide a force in N by the thickness in m, or give"
-            hint = f"{hint} the thickness"
-        words = f"{_short(unit.factor * largest[name])} {unit.name} is a bearing stress of {_mega(bearing)} only"
+            name_of_unit, example = units(problem)["force"].name, ": 1 N/mm is 1e3" if problem.unit_system == SI else ""
+            hint = (
+                f"forces are per thickness, in {name_of_unit}{example}; divide a force in N by the thickness in m, or"
+            )
+            hint = f"{hint} give the thickness"
+        words = f"{_text(problem, 'force', largest[name])} is a bearing stress of {_stress(problem, bearing)} only"
         yield name, f"{words}; {hint}"
     for name in ("sxx", "syy", "sxy"):
         if 0.0 < (stress := abs(largest.get(name, 0.0))) < 2e3 and stress != 1.0:  # no metal carries 2,000 MPa
-            words = f"{_short(largest[name])} Pa is very small; stresses are in Pa"
-            yield name, f"{words}; {_meant(largest[name], 'MPa', 1e6)}"
+            hint = _hint(problem, "stresses", "traction", _meant(largest[name], "MPa", 1e6))
+            yield name, f"{_text(problem, 'traction', largest[name])} is very small; {hint}"

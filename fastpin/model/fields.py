@@ -28,8 +28,9 @@ class Field(NamedTuple):
         Other words that users write for its name, in lower case.
     is_profile : bool
         Whether it may be a profile along the rim instead of a number.
-    has_section : bool
-        Whether it is no key of [contact], but a section of its own, with a profile along the rim for each key.
+    place : {"[contact]", "section", "root"}
+        Where it stands in a case file: a key of [contact], a section of its own with a profile along the rim for each
+        key, or a key before the first section.
     """
 
     kind: str = ""
@@ -39,7 +40,7 @@ class Field(NamedTuple):
     words: str = ""
     also: str = ""
     is_profile: bool = False
-    has_section: bool = False
+    place: Literal["[contact]", "section", "root"] = "[contact]"
 
 
 FIELDS = {
@@ -70,7 +71,8 @@ FIELDS = {
         in_ids="given",
         words="initial gap",
         also="initial_gap profile profiles form ovality roundness initial_profile",
-        has_section=True,
+        place="section",
     ),
+    "unit_system": Field(in_ids="never", place="root", also="units unit system unitsystem"),
 }
 """The fields by name, in the order of case files."""

@@ -341,14 +341,6 @@ def law_entries(law: KnownLaw) -> dict[str, Any]:
     return {"law": name} | {each.name: value for each, value in values if value != each.default}
 
 
-def law_words(law: KnownLaw) -> str:
-    """Return a law and its constants as text, in SI units."""
-    entries = law_entries(law)
-    names = ", ".join(f"{name} = {value:.6g}" for name, value in entries.items() if not isinstance(value, str))
-    source = f"; source: {entries['source']}" if law.source else ""
-    return f"{entries['law']}, {names} (SI units){source}"
-
-
 def law_from(entries: dict[str, Any]) -> KnownLaw:
     """Return the law of such entries.
 

@@ -329,12 +329,12 @@ class LoadHistory:
         InputError
             If `path`, `columns`, `thickness` or `skip` can't be used.
         """
-        from fastpin.tables import column_choices, history_from_csv
+        from fastpin.tables import Basis, column_choices, history_from_csv
 
         path = file_path("path", path)
         choices = None if columns is None else column_choices("columns", columns)
         skip = whole_number("skip", skip, 0)
-        found = history_from_csv(path, choices, "with thickness" if thickness else "per metre", skip)
+        found = history_from_csv(path, choices, Basis("with thickness" if thickness else "per metre"), skip)
         return found if thickness is None else found.per_thickness(thickness)
 
     def repeated(self, count: int) -> LoadHistory:

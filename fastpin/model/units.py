@@ -1,51 +1,72 @@
-"""Units of every kind of quantity, and SI prefixes.
+"""Units of every kind of quantity, systems of units, and SI prefixes.
 
 Everything that is printed, drawn or written as text takes its units from :func:`units`. With a thickness these are N,
-N m, J and N m/rad, and a factor goes with each. :func:`units_per_thickness` names the units of numbers in Python, HDF5
-files and indexes of sweeps. Outputs do not import it, see ``tests/project/test_layout.py``.
+N m, J and N m/rad, and a factor goes with each. A problem may have a system of units of its own, see
+:func:`checked_system`. :func:`units_per_thickness` names the units of numbers in Python, HDF5 files and indexes of
+sweeps, which are always SI. Outputs do not import it, see ``tests/project/test_layout.py``.
 """
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from fastpin.model.keys import Kinds, converted
 from fastpin.model.loads import LATER, LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
+from fastpin.model.unit_systems import SI, Measure, measures
 
 
 class _Kind(NamedTuple):
-    """The units of a kind of quantity: SI, of a dimensionless problem, and of a problem with a thickness.
+    """The units of a kind of quantity.
 
-    The last one is empty unless the SI unit is per thickness.
+    Attributes
+    ----------
+    si, dimensionless : str
+        In SI, and in a dimensionless problem.
+    system : str
+        In a system of units: its length, force and stress stand for L, F and S. Empty if `si` is its unit there, too.
+    powers : tuple of float
+        Powers of length, force and stress.
+    whole, whole_system : str
+        In SI and in a system for a problem with a thickness, by which the quantity is multiplied; empty if it is not.
     """
 
     si: str
     dimensionless: str
+    system: str = ""
+    powers: tuple[float, float, float] = (0, 0, 0)
     whole: str = ""
+    whole_system: str = ""
 
 
 _KINDS = {
-    "force": _Kind("N/m", "F", "N"),
-    "moment": _Kind("N", "F R", "N m"),
-    "traction": _Kind("Pa", "F/R"),
-    "length": _Kind("m", "R"),
-    "displacement": _Kind("m", "F beta*"),
+    "force": _Kind("N/m", "F", "F/L", (-1, 1, 0), "N", "F"),
+    "moment": _Kind("N", "F R", "F L/L", (0, 1, 0), "N m", "F L"),
+    "traction": _Kind("Pa", "F/R", "S", (0, 0, 1)),
+    "modulus": _Kind("Pa", "1/beta*", "S", (0, 0, 1)),
+    "compliance": _Kind("1/Pa", "beta*", "1/S", (0, 0, -1)),
+    "length": _Kind("m", "R", "L", (1, 0, 0)),
+    "displacement": _Kind("m", "F beta*", "L", (1, 0, 0)),
     "rotation": _Kind("rad", "F beta*/R"),
-    "stiffness": _Kind("N/rad", "R^2/beta*", "N m/rad"),
-    "rig stiffness": _Kind("N/m^2", "1/beta*", "N per m"),
-    "energy": _Kind("J/m", "F^2 beta*", "J"),
+    "stiffness": _Kind("N/rad", "R^2/beta*", "F/rad", (0, 1, 0), "N m/rad", "F L/rad"),
+    "rig stiffness": _Kind("N/m^2", "1/beta*", "F/L^2", (-2, 1, 0), "N per m", "F per L"),
+    "energy": _Kind("J/m", "F^2 beta*", "F L/L", (0, 1, 0), "J", "F L"),
     "ratio": _Kind("", ""),
     "temperature": _Kind("K", "K"),
-    "energy density": _Kind("J/m^2", "F^2 beta*/R"),
-    "stress times strain": _Kind("Pa", "F^2 beta*/R^2"),
-    "stress intensity": _Kind("Pa sqrt(m)", "F/sqrt(R)"),
-    "crack growth": _Kind("m/cycle", "R/cycle"),
+    "energy density": _Kind("J/m^2", "F^2 beta*/R", "F L/L^2", (-1, 1, 0)),
+    "stress times strain": _Kind("Pa", "F^2 beta*/R^2", "S", (0, 0, 1)),
+    "stress intensity": _Kind("Pa sqrt(m)", "F/sqrt(R)", "S sqrt(L)", (0.5, 0, 1)),
+    "crack growth": _Kind("m/cycle", "R/cycle", "L/cycle", (1, 0, 0)),
     "life": _Kind("cycles", "cycles"),
-    "work per stress": _Kind("m^2", "F R beta*", "m^3"),
-    "wear coefficient": _Kind("1/Pa", "R/F"),
+    "work per stress": _Kind("m^2", "F R beta*", "L^2", (2, 0, 0), "m^3", "L^3"),
+    "wear coefficient": _Kind("1/Pa", "R/F", "1/S", (0, 0, -1)),
+    "flexibility": _Kind("m/N", "beta*", "L/F", (1, -1, 0)),
 }
 
 PER_THICKNESS = {name: kind.whole for name, kind in _KINDS.items() if kind.whole}
@@ -74,18 +95,32 @@ class Unit:
     factor : float
         A value in Python times this factor is in the unit.
     name : str
+    is_chosen : bool
+        Whether the user chose it. Then it gets no prefix.
     """
 
     factor: float
     name: str
+    is_chosen: bool = False
 
     def __str__(self) -> str:
         raise TypeError("a unit is printed by text or scale, which convert the value, or by its name")
 
     def scale(self, values: Sequence[float]) -> tuple[float, str]:
         """As :func:`scaled`, for values in Python: the factor converts them to the unit, too."""
+        if self.is_chosen:
+            return self.factor, self.name
         factor, label = scaled([self.factor * value for value in values], self.name)
         return self.factor * factor, label
+
+    @property
+    def printed(self) -> Unit:
+        """This unit for values that are in it already."""
+        return Unit(1.0, self.name, self.is_chosen)
+
+    def column(self, words: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """Values in Python as a column of a table by its heading: its words and this unit."""
+        return {f"{words} [{self.name}]": self.factor * values}
 
     def text(self, value: float, digits: int = 6) -> str:
         """A value in Python as text in this unit with an SI prefix, to so many significant `digits`."""
@@ -93,8 +128,8 @@ class Unit:
         return f"{value * factor:.{digits}g} {label}"
 
 
-PASCAL = Unit(1.0, "Pa")
-"""The unit of moduli and strengths, which are never dimensionless."""
+PLAIN = Unit(1.0, "")
+"""The unit of plain numbers."""
 
 DEGREE = Unit(1.0, "deg")
 """The unit of angles and widths that are in degrees already."""
@@ -102,15 +137,61 @@ DEGREE = Unit(1.0, "deg")
 
 def units(problem: Problem) -> dict[str, Unit]:
     """The unit of every kind of quantity in printed texts: with the thickness of the problem, if it has one."""
+    if problem.unit_system != SI:
+        factor = 1.0 if problem.thickness is None else problem.thickness
+        of_system = units_of(problem.unit_system, problem.thickness is not None)
+        return {
+            kind: Unit(unit.factor * (factor if kind in PER_THICKNESS else 1.0), unit.name, unit.is_chosen)
+            for kind, unit in of_system.items()
+        }
     found = {kind: Unit(1.0, name) for kind, name in units_per_thickness(problem).items()}
     if problem.thickness is not None:
         found |= {kind: Unit(problem.thickness, name) for kind, name in PER_THICKNESS.items()}
     return found
 
 
+@functools.cache
+def units_of(system: str, whole: bool) -> Mapping[str, Unit]:
+    """The unit of every kind of quantity in a system of units, for values in SI units.
+
+    Kinds of :data:`PER_THICKNESS` count for the `whole` thickness, or per thickness.
+    """
+    ways = measures_of(system, whole)
+    return {kind: Unit(way.per_si, way.name, system != SI and bool(_KINDS[kind].system)) for kind, way in ways.items()}
+
+
+@functools.cache
+def measures_of(system: str, whole: bool) -> Mapping[str, Measure]:
+    """The way of numbers of every kind from a system of units to SI units, see :func:`units_of`."""
+    found, basic = {}, measures(system)
+    symbols = {letter: each.name for letter, each in zip("LFS", basic, strict=True)}
+    for kind, each in _KINDS.items():
+        is_whole = whole and bool(each.whole)
+        if system == SI or not each.system:
+            found[kind] = Measure(each.whole if is_whole else each.si)
+            continue
+        name = "".join(symbols.get(letter, letter) for letter in (each.whole_system if is_whole else each.system))
+        powers = (each.powers[0] + is_whole, *each.powers[1:])
+        decade = sum(power * one.power for power, one in zip(powers, basic, strict=True))
+        factor = math.prod(one.factor**power for power, one in zip(powers, basic, strict=True))
+        found[kind] = Measure(name, math.floor(decade), factor * 10.0 ** (decade - math.floor(decade)))
+    return found
+
+
 def units_per_thickness(problem: Problem) -> dict[str, str]:
     """The unit of every kind of quantity in Python: SI, or the paper's units for a dimensionless problem."""
     return {name: kind.dimensionless if problem.dimensionless else kind.si for name, kind in _KINDS.items()}
+
+
+def system_words(problem: Problem) -> str:
+    """The system of units of printed texts in words, such as "SI units" or "units of in, lbf, ksi"."""
+    return "SI units" if problem.unit_system == SI else f"units of {problem.unit_system}"
+
+
+def in_units(problem: Problem, value: Any, kinds: Kinds) -> Any:
+    """A value in SI units, such as a table of a case file, in printed units: `kinds` are those of its numbers."""
+    unit = units(problem)
+    return converted(value, kinds, lambda kind, number: unit[kind].factor * number)
 
 
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fastpin.assess.crack import growth_line
+from fastpin.assess.crack import growth_line, law_words
 from fastpin.assess.cycle import cycle_line
 from fastpin.assess.fatigue import Assessed, hot_spot_line, spectrum_line
 from fastpin.assess.margins import verdict
@@ -30,11 +30,13 @@ from fastpin.kernels.status import SLIP_POSITIVE
 from fastpin.model import angles, points, ties
 from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
-from fastpin.model.growth import Nasgro, Walker, law_words
+from fastpin.model.growth import Nasgro, Walker
+from fastpin.model.keys import FATIGUE, PLY
 from fastpin.model.loads import LOAD, named_load
 from fastpin.model.materials import Material
 from fastpin.model.options import OPTIONS
-from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
+from fastpin.model.problem import Problem
+from fastpin.model.units import Unit, acting_loads, in_units, named_loads, system_words, units
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
 from fastpin.pages.source import PageParts, Source, margins, sentence
 from fastpin.reading.zones import is_all_round
@@ -168,16 +170,18 @@ def materials(page: PageParts) -> PageSection:
     """Return the constants of all materials."""
     problem = page.source.case.problem
     found = problem.joint.materials
-    modulus = Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL
+    modulus = units(problem)["modulus"]
     names = ["material", "Young's modulus E", "Poisson's ratio nu", "shear modulus G", "yield strength"]
     columns: list[Column] = [("constant", "", names)]
     columns += [(name, "", _constants(material, modulus)) for name, material in found.items()]
     parts: list[SectionPart] = [Table("Elastic constants and yield strength", columns)]
     for name, material in found.items():
         if not material.is_isotropic:
-            parts += _laminate(name, material, modulus)
+            parts += _laminate(name, material, problem)
     fatigue = {
-        name: material.fatigue.given() for name, material in found.items() if material.fatigue and not material.is_rigid
+        name: in_units(problem, material.fatigue.given(), FATIGUE)
+        for name, material in found.items()
+        if material.fatigue and not material.is_rigid
     }
     sources = {name: given.pop("source", "") for name, given in fatigue.items()}
     if fatigue:
@@ -186,13 +190,13 @@ def materials(page: PageParts) -> PageSection:
         for body, given in fatigue.items():
             values = [given.get(name, "-") for name in names]
             columns.append((body, "", [value if isinstance(value, str) else f"{value:.6g}" for value in values]))
-        parts.append(Table("Fatigue constants, in SI units", columns))
+        parts.append(Table(f"Fatigue constants, in {system_words(problem)}", columns))
         parts += [Text(f"Source of the constants of the {body}: {text}.") for body, text in sources.items() if text]
     else:
         parts.append(Text("No material has fatigue constants: see the key fatigue of a case file.", "missing"))
     for body, material in found.items():
         if material.growth is not None:
-            parts.append(Text(sentence(f"Crack growth in the {body}: {law_words(material.growth)}")))
+            parts.append(Text(sentence(f"Crack growth in the {body}: {law_words(problem, material.growth)}")))
     return PageSection("materials", "Materials", parts)
 
 
@@ -203,25 +207,27 @@ def _constants(material: Material, unit: Unit) -> list[str]:
         return [material.label, "-", "-", "-", "-"]
     moduli = [unit.text(value, 5) for value in (material.E, material.shear_modulus)]
     strength = material.known_yield_strength
-    yields = "not known" if strength is None else PASCAL.text(strength, 5)
+    yields = "not known" if strength is None else unit.text(strength, 5)
     return [material.name or "no name", moduli[0], f"{material.nu:.5g}", moduli[1], yields]
 
 
-def _laminate(name: str, material: Material, unit: Unit) -> list[SectionPart]:
+def _laminate(name: str, material: Material, problem: Problem) -> list[SectionPart]:
     """Return the moduli of a laminate, and the constants and sources of its plies."""
-    moduli = material.shown_moduli.items()
+    moduli, unit = material.shown_moduli.items(), units(problem)["modulus"]
     whole = [f"{value:.5g}" if field.startswith("nu") else unit.text(value, 5) for field, value in moduli]
     rows: list[Column] = [("constant", "", [*material.shown_moduli, "direction"])]
     rows.append((name, "", [*whole, material.direction_words]))
     parts: list[SectionPart] = [Table(f"Laminate of the {name}: moduli of the whole", rows)]
-    plies = material.entries().get("plies", [])
+    plies = in_units(problem, material.entries().get("plies", []), PLY)
     names = list(dict.fromkeys(field for ply in plies for field in ply if field not in ("name", "source")))
     if plies:
         columns: list[Column] = [("constant", "", names)]
         for ply in plies:
             values = [f"{ply[field]:.6g}" if field in ply else "-" for field in names]
             columns.append((ply.get("name", "no name"), "", values))
-        parts.append(Table("Plies, in SI units" if unit is PASCAL else "Plies, moduli in 1/beta*", columns))
+        parts.append(
+            Table(f"Plies, {'moduli in 1/beta*' if problem.dimensionless else f'in {system_words(problem)}'}", columns)
+        )
     sources = {ply.get("name", "a ply"): ply["source"] for ply in plies if "source" in ply}
     return parts + [Text(f"Source of the constants of {ply}: {text}.") for ply, text in sources.items()]
 
@@ -451,7 +457,7 @@ def crack(page: PageParts) -> PageSection:
         page.album.figure(crack_growth_of(found)),
     ]
     if isinstance(found.law, Walker | Nasgro):
-        parts.append(Text(sentence(f"Law of growth: {law_words(found.law)}")))
+        parts.append(Text(sentence(f"Law of growth: {law_words(found.problem, found.law)}")))
     parts += [Text(sentence(f"Doubt: {doubt}")) for doubt in found.doubts]
     return PageSection("crack", "Crack", parts)
 

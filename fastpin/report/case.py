@@ -12,7 +12,7 @@ from fastpin.assess.outputs import ROUNDING, Column, table, visible_rows
 from fastpin.model import Case, LoadHistory, Material, Problem, Wear, checks, points
 from fastpin.model.case import beside_of
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
-from fastpin.model.units import PASCAL, acting_loads, units
+from fastpin.model.units import acting_loads, units
 
 
 def describe(case: Case) -> str:
@@ -41,7 +41,7 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         scale = "dimensionless: R = 1, F = 1, beta* = 1"
         size = f"load parameter {problem.clearance:.4g}"
     else:
-        scale = f"beta* = {surfaces.beta_star:.4g} 1/Pa"
+        scale = f"beta* = {units(problem)['compliance'].text(surfaces.beta_star, 4)}"
         kind = "clearance" if problem.clearance >= 0.0 else "clearance (interference)"
         length = units(problem)["length"]
         size = f"hole radius {length.text(problem.hole_radius)}, {kind} {length.text(problem.clearance)}"
@@ -56,8 +56,8 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         where = f"arc from {options.arc[0]:g} to {options.arc[1]:g} rad"
     method = options.method if options.method == "path" else f"increment, {options.increments} a corner"
     rows = [
-        (points.owner_of(problem, "pin"), _material(pair.pin, problem.dimensionless)),
-        ("plate", _material(pair.plate, problem.dimensionless)),
+        (points.owner_of(problem, "pin"), _material(pair.pin, problem)),
+        ("plate", _material(pair.plate, problem)),
         *_bodies(problem),
         ("pair", f"plane {pair.plane}, {contact}Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),
         ("contact", f"{size}, friction {problem.friction_words()}"),
@@ -69,19 +69,20 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
     if options.keep != "all":
         rows.append(("states", f"kept: {options.keep}"))
     if case.wear is not None:
-        rows.append(("wear", _wear_words(case.wear)))
+        rows.append(("wear", _wear_words(problem, case.wear)))
     return rows + [
         (name, assess.questions.QUESTIONS[name].words(problem, how)) for name, how in beside_of(case).items()
     ]
 
 
-def _wear_words(wear: Wear) -> str:
+def _wear_words(problem: Problem, wear: Wear) -> str:
     """Law, cycles and coefficients of wear."""
     names = {"coefficient": "pin and plate together", "pin": "pin", "plate": "plate"}
     known = {words: profile for name, words in names.items() if (profile := wear.given.get(name)) is not None}
-    parts = [f"{words} {profile.words(lambda value: f'{value:.4g}')}" for words, profile in known.items()]
+    unit = units(problem)["wear coefficient"]
+    parts = [f"{words} {profile.words(lambda value: f'{unit.factor * value:.4g}')}" for words, profile in known.items()]
     law = {"archard": "Archard's law", "energy": "law of energy"}[wear.law]
-    return f"{law}, {wear.cycles:,} cycles; in 1/Pa: {', '.join(parts)}"
+    return f"{law}, {wear.cycles:,} cycles; in {unit.name}: {', '.join(parts)}"
 
 
 def profile_rows(problem: Problem) -> list[tuple[str, str]]:
@@ -107,7 +108,7 @@ def _bodies(problem: Problem) -> list[tuple[str, str]]:
     """Return the rows of the bodies; none for a solid pin in an infinite plate."""
     unit, bush, rows = units(problem), problem.plate_body.bush, []
     for body in (problem.pin_body, problem.plate_body):
-        rows += body.rows(unit["length"].text, lambda material: _material(material, problem.dimensionless))
+        rows += body.rows(unit["length"].text, lambda material: _material(material, problem))
     if bush is not None and bush.interference < 0.0:
         rows.append(
             ("loose fit", f"clearance {unit['displacement'].text(-bush.interference)} of the bush in the plate")
@@ -133,8 +134,8 @@ def _hub(problem: Problem) -> str:
         if problem.surfaces.pin.is_rigid:
             return spring
         datum = problem.hole_radius / math.sqrt(problem.surfaces.pin_kolosov + 1.0)
-        return f"{spring} at radius {datum:.4g} {unit['length'].name}, the paper's datum"
-    return f"{spring} at radius {problem.hub_radius:g} {unit['length'].name}"
+        return f"{spring} at radius {unit['length'].text(datum, 4)}, the paper's datum"
+    return f"{spring} at radius {unit['length'].text(problem.hub_radius)}"
 
 
 def _drive(problem: Problem) -> str:
@@ -142,14 +143,14 @@ def _drive(problem: Problem) -> str:
     if problem.drive == "force":
         return ""
     names = {"ux": "ux in place of Q", "uy": "uy in place of P", "both": "ux and uy in place of Q and P"}
-    length = units(problem)["length"].name
+    length = units(problem)["length"]
     words = f", {names[problem.drive]}"
     if problem.gauge_radius is not None:
-        words += f" over radius {problem.gauge_radius:g} {length}"
+        words += f" over radius {length.text(problem.gauge_radius)}"
     if problem.rig_stiffness is not None:
         words += f", rig of stiffness {units(problem)['rig stiffness'].text(problem.rig_stiffness)}"
     if problem.hub_radius is not None and not problem.held:
-        words += f", hub of radius {problem.hub_radius:g} {length}"
+        words += f", hub of radius {length.text(problem.hub_radius)}"
     return words
 
 
@@ -196,16 +197,17 @@ def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list
     return columns
 
 
-def _material(material: Material, dimensionless: bool) -> str:
+def _material(material: Material, problem: Problem) -> str:
     if material.is_rigid:
         return "rigid"
     pressures = [name for name in material.shown_moduli if not name.startswith("nu")]
-    unit = "{:.4g} / beta*".format if dimensionless else PASCAL.text
+    unit = units(problem)
+    modulus = "{:.4g} / beta*".format if problem.dimensionless else unit["modulus"].text
     moduli = [
-        f"{name} = {unit(value) if name in pressures else f'{value:.4g}'}"
+        f"{name} = {modulus(value) if name in pressures else f'{value:.4g}'}"
         for name, value in material.shown_moduli.items()
     ]
     strength = material.known_yield_strength
-    yields = "" if strength is None else f"yields at {PASCAL.text(strength, 4)}"
+    yields = "" if strength is None else f"yields at {unit['modulus'].text(strength, 4)}"
     expands = "" if material.expansion is None else f"expands by {material.expansion:.4g} per K"
     return ", ".join(filter(None, [material.label, *moduli, material.direction_words, expands, yields]))

@@ -32,7 +32,7 @@ from fastpin.assess.outputs import (
 )  # fmt: skip
 from fastpin.model.options import METHODS
 from fastpin.model.problem import Problem
-from fastpin.model.units import DEGREE, named_loads, printed_loads, scaled, units
+from fastpin.model.units import DEGREE, Unit, named_loads, printed_loads, units
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
 from fastpin.storage.files import replacing
 from fastpin.studies.convergence import Convergence, QuantitySeries, Study
@@ -53,8 +53,8 @@ class ReportedSeries:
     name, label : str
         The quantity's name, see :data:`fastpin.states.quantities.QUANTITIES`, and its heading in tables. An outcome has
         the name that the user chose for both.
-    unit : str
-        "deg" for angles and widths.
+    unit : Unit
+        Degrees for angles and widths. The values are in it already.
     values : tuple of float
         One for each grid or number of increments. NaN where a value can't be compared with the last one. Angles are
         next to the last one, so they may lie outside of -180 to 180.
@@ -73,7 +73,7 @@ class ReportedSeries:
     corner: int
     name: str
     label: str
-    unit: str
+    unit: Unit
     values: tuple[float, ...]
     verdict: Verdict
     order: float
@@ -103,7 +103,7 @@ class ReportedSeries:
             return unit.factor * (reported_last + reported_bar(value - last))
 
         return cls(
-            series.corner, name, label, unit.name, tuple(map(in_report_units, series.values)), estimate.verdict,
+            series.corner, name, label, unit.printed, tuple(map(in_report_units, series.values)), estimate.verdict,
             estimate.order, in_report_units(estimate.limit), unit.factor * reported_bar(estimate.bar), estimate.scatter,
             unit.factor * reported_bar(series.reference), in_report_units(series.path),
             unit.factor * reported_bar(ROUNDING * series.size), outcome is not None,
@@ -164,7 +164,7 @@ def series_columns(study: Study, rows: Sequence[ReportedSeries]) -> list[Column]
 
 def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
     zero = row.verdict == "to rounding" and abs(row.limit) <= row.negligible
-    factor, unit = scaled([0.0] if zero else [row.values[-1]], row.unit)
+    factor, unit = row.unit.scale([0.0] if zero else [row.values[-1]])
     if row.verdict == "to rounding":
         decimals = None
     else:
@@ -196,7 +196,7 @@ def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
 SERIES = (
     Output("corner", "whole"),
     Output("quantity", "text", lambda row: row.name),
-    Output("unit", "text"),
+    Output("unit", "text", lambda row: row.unit.name),
     Output("values", form=list_of(UNKNOWN)),
     Output("verdict", "text"),
     *outputs.numbers("order limit bar scatter path", optional=True),

@@ -78,17 +78,18 @@ def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
     Columns: the angle in degrees from the bottom, -180 to 180, and the hoop stress in Pa or F/R; its part that the
     assembly leaves before any load, if something is pressed.
     """
-    unit, curves = units(states[0].problem)["traction"].name, []
+    unit, curves = units(states[0].problem)["traction"], []
     for each in bodies_of(states[0], body):
         for state in states:
             around = -1.5 * math.pi + 2.0 * math.pi * np.arange(AROUND + 1) / AROUND
             sharp = np.concatenate([np.zeros(0), *(patch[:, 0] for patch in state.refined.tractions.patches)])
             sharp = np.remainder(sharp + 1.5 * math.pi, 2.0 * math.pi) - 1.5 * math.pi
             theta = np.unique(np.r_[around, sharp])
-            columns = {"angle [deg]": np.degrees(theta) + 90.0, f"hoop stress [{unit}]": state.hoop_stress(each, theta)}
+            columns = {"angle [deg]": np.degrees(theta) + 90.0}
+            columns |= unit.column("hoop stress", state.hoop_stress(each, theta))
             if state.problem.is_pressed:
                 before = state.assembly_stress(points.Points.at_depth(0.0, theta), each).hoop
-                columns[f"hoop stress of the assembly [{unit}]"] = before
+                columns |= unit.column("hoop stress of the assembly", before)
             curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
     return curves
 
@@ -125,9 +126,9 @@ def depth_curves(
             state.peak_hoop_stress(body).angle if angle is None else math.radians(checks.number("angle", angle) - 90.0)
         )
         found = state.stress(points.Points.at_depth(below, place), body)
-        columns = {f"depth [{unit['length'].name}]": below}
+        columns = unit["length"].column("depth", below)
         for name in ("radial", "hoop", "shear", "von_mises"):
-            columns[f"{COMPONENTS[name]} [{unit['traction'].name}]"] = component_of(found, name)
+            columns |= unit["traction"].column(COMPONENTS[name], component_of(found, name))
         parameters = {"body": body, "load point": load_point(state), "angle [deg]": angles.from_bottom(place)}
         curves.append(Curve(parameters, columns))
     return curves
@@ -193,14 +194,12 @@ def field_curves(
         below = radius * deepest * part**2 if each == "plate" else in_pin
         found = state.stress(points.Points.at_depth(below, theta), each)
         if component == UTILIZATION:
-            values, name = 1.0 / first_ply_failure(laminate_of(state.problem), found.in_plane).ratio, FIELDS[component]
+            ratio = first_ply_failure(laminate_of(state.problem), found.in_plane).ratio
+            column = {FIELDS[component]: 1.0 / ratio.ravel()}
         else:
-            values, name = component_of(found, component), f"{FIELDS[component]} [{unit['traction'].name}]"
+            column = unit["traction"].column(FIELDS[component], component_of(found, component).ravel())
         distance = radius + below if each == "plate" else radius - below
-        columns = {
-            f"radius [{unit['length'].name}]": np.broadcast_to(distance, values.shape).ravel(),
-            "angle [deg]": np.broadcast_to(np.degrees(theta) + 90.0, values.shape).ravel(),
-            name: values.ravel(),
-        }
+        places = np.broadcast_arrays(distance, np.degrees(theta) + 90.0)
+        columns = unit["length"].column("radius", places[0].ravel()) | {"angle [deg]": places[1].ravel()} | column
         curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
     return curves

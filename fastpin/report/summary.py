@@ -56,7 +56,7 @@ def _in_its_unit(name: str, problem: Problem) -> Any:
     value, kind = getattr(problem, name), FIELDS[name].kind
     if isinstance(value, Profile):
         return value.toml()
-    if FIELDS[name].has_section:
+    if FIELDS[name].place == "section":
         return {key: profile.toml() for key, profile in value.given.items()} or None
     return units(problem)[kind].factor * value if kind and value is not None else value
 
@@ -65,11 +65,11 @@ def _form(each: Field) -> outputs.Schema:
     """The schema of a field."""
     words = "terms of a profile; angles in degrees from the bottom"
     profile = outputs.list_of({"type": "object"}) | {"description": words}
-    if each.has_section:
+    if each.place == "section":
         return outputs.map_of(profile, "profiles; left out without any")
     if each.is_profile:
         return {"anyOf": [NUMBER, profile]}
-    return TEXT if each.choices else UNKNOWN if each.is_optional else NUMBER
+    return TEXT if each.choices or each.place == "root" else UNKNOWN if each.is_optional else NUMBER
 
 
 PLATE = (
@@ -106,7 +106,7 @@ PROBLEM = (
         ),
     ),
     Output("beta_star", of=lambda problem: problem.surfaces.beta_star),
-    *(Output(name, of=partial(_in_its_unit, name), form=_form(each), may_lack=each.has_section)
+    *(Output(name, of=partial(_in_its_unit, name), form=_form(each), may_lack=each.place == "section")
       for name, each in FIELDS.items()),
     *(
         Output(

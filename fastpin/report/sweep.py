@@ -18,16 +18,17 @@ from fastpin.assess.strength import strength_words
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import InputError
 from fastpin.model import LOADS, Case, Problem, Profile, StrengthAssessment, Wear, checks, synonyms
+from fastpin.model.keys import kind_of
 from fastpin.model.points import BODIES
 from fastpin.model.profile_terms import TERMS
-from fastpin.model.units import DEGREE, Unit, scaled, units
+from fastpin.model.units import DEGREE, PLAIN, Unit, measures_of, units
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.outcome_tables import KEYS
 from fastpin.studies.outcomes import StudyOutcome
 from fastpin.studies.plan import Plan
 from fastpin.studies.run_end import KEY_FIGURES, bar_column
-from fastpin.studies.variation import field_kind, field_words
+from fastpin.studies.variation import field_words
 from fastpin.version import __version__
 
 TableRow = dict[str, Any]
@@ -53,9 +54,6 @@ _SHOWN = {
 }
 """Key figures of the text table and their headings, unless the plan has outcomes. The CSV file has all key figures."""
 
-BYPASS, BEARING = "bypass stress [Pa]", "bearing stress [Pa]"
-"""Columns of an envelope."""
-
 
 def text(plan: Plan, rows: Sequence[TableRow]) -> str:
     """Return the table of :func:`run_columns` as text. A long table lacks its middle."""
@@ -73,12 +71,12 @@ def run_columns(plan: Plan, rows: Sequence[TableRow]) -> list[Column]:
     columns = [("run", "", [row["id"] for row in rows])]
     for name in plan.fields:
         heading = plan.labels.get(name, name)
-        columns.append(_column(heading, [row[name] for row in rows], unit.get(field_kind(name), "")))
+        columns.append(_column(heading, [row[name] for row in rows], unit.get(kind_of(name), PLAIN)))
     shown = dict(zip(plan.outcomes, plan.outcomes, strict=True)) or _SHOWN
     for name, heading in shown.items():
         values = [_in_words(plan, name, row.get(name)) for row in rows]
         bars = [row.get(bar_column(name)) for row in rows]
-        columns.append(_column(plan.labels.get(name, heading), values, unit_name(plan, name, unit), bars))
+        columns.append(_column(plan.labels.get(name, heading), values, printed_unit(plan, name, unit), bars))
     columns.append(("status", "", [row["status"] for row in rows]))
     return columns
 
@@ -97,8 +95,8 @@ def write_csv(plan: Plan, rows: Sequence[TableRow], path: Path) -> None:
     """
     check_writable(path)
     rows, unit = printed_rows(plan, rows)
-    named = [(name, unit.get(field_kind(name), "")) for name in plan.fields]
-    named += [(name, unit_name(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
+    named = [(name, unit.get(kind_of(name), PLAIN)) for name in plan.fields]
+    named += [(name, printed_unit(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
     with_bars = [
         each
         for name in (*plan.outcomes, *KEY_FIGURES)
@@ -108,7 +106,7 @@ def write_csv(plan: Plan, rows: Sequence[TableRow], path: Path) -> None:
     names = ["id", *plan.fields, *with_bars, "seconds", "started", "host", "status", "reason"]
     out = io.StringIO()
     out.write(f"# fastpin {__version__}{f', {plan.title}' if plan.title else ''}\n")
-    out.write(f"# units: {', '.join(f'{name} {label}' for name, label in named if label)}, seconds s\n")
+    out.write(f"# units: {', '.join(f'{name} {label.name}' for name, label in named if label.name)}, seconds s\n")
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(map(csv_cell, names))
     for row in rows:
@@ -286,9 +284,8 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
     rows, unit = printed_rows(plan, rows)
     found = [row.get(value) for row in rows if row["status"] == DONE and row.get(value) is not None]
     least = _rounding(plan, rows, value, unit)
-    factor, label = scaled(
-        [number for number in found if number is not None and abs(number) > least], unit_name(plan, value, unit)
-    )
+    shown = [number for number in found if number is not None and abs(number) > least]
+    factor, label = printed_unit(plan, value, unit).scale(shown)
     others_words = {other: value_words(plan, rows, other, unit) for other in others}
     axes = [_axis(plan, rows, name, unit) for name in (y, x) if name is not None]
     shape = tuple(len(axis.values) for axis, _ in axes)
@@ -318,10 +315,10 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
     )
 
 
-def _axis(plan: Plan, rows: Sequence[TableRow], name: str, unit: dict[str, str]) -> tuple[Axis, dict[Any, int]]:
+def _axis(plan: Plan, rows: Sequence[TableRow], name: str, unit: Mapping[str, Unit]) -> tuple[Axis, dict[Any, int]]:
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
-    factor, label = scaled(values, unit.get(field_kind(name), ""))
+    factor, label = unit.get(kind_of(name), PLAIN).scale(values)
     words = plan.labels.get(name, field_words(name))
     axis = Axis(axis_label(words, label), factor * np.array(values, float), plan.fields[name] == "log")
     return axis, {value: place for place, value in enumerate(values)}
@@ -337,16 +334,16 @@ def axis_label(words: str, unit: str) -> str:
     return f"{words} ({unit})" if unit else words
 
 
-def value_words(plan: Plan, rows: Sequence[TableRow], field: str, unit: dict[str, str]) -> Callable[[Any], str]:
+def value_words(plan: Plan, rows: Sequence[TableRow], field: str, unit: Mapping[str, Unit]) -> Callable[[Any], str]:
     """Return a function that gives words for a value of a field, in the unit that suits all its values."""
     words, given = plan.labels.get(field, field_words(field)), [row[field] for row in rows if row[field] is not None]
     if not all(map(_is_number, given)):
         return lambda value: f"{words} = {brief(value)}".replace('"', "")
-    factor, label = scaled(given, unit.get(field_kind(field), ""))
+    factor, label = unit.get(kind_of(field), PLAIN).scale(given)
     return lambda value: f"{words} = {factor * value:.4g} {label}".strip()
 
 
-def _rounding(plan: Plan, rows: Sequence[TableRow], value: str, unit: dict[str, str]) -> float:
+def _rounding(plan: Plan, rows: Sequence[TableRow], value: str, unit: Mapping[str, Unit]) -> float:
     """Return the size below which values of a figure are rounding.
 
     It is a part of the largest value, and of the largest key figure of the same kind: a motion that is zero by symmetry
@@ -356,10 +353,10 @@ def _rounding(plan: Plan, rows: Sequence[TableRow], value: str, unit: dict[str, 
     if value in KEY_FIGURES and value not in plan.outcomes and KEY_FIGURES[value]:
         alike = [name for name, kind in KEY_FIGURES.items() if kind == KEY_FIGURES[value]]
     numbers = [abs(row[name]) for row in rows if row["status"] == DONE for name in alike if _is_number(row.get(name))]
-    return max(_ROUNDING.get(unit_name(plan, value, unit), 0.0), ROUNDING * max(numbers, default=0.0))
+    return max(_ROUNDING.get(printed_unit(plan, value, unit).name, 0.0), ROUNDING * max(numbers, default=0.0))
 
 
-def _column(name: str, values: Sequence[Any], unit: str, bars: Sequence[float | None] = ()) -> Column:
+def _column(name: str, values: Sequence[Any], unit: Unit, bars: Sequence[float | None] = ()) -> Column:
     """Return a column of the text table. Numbers get an SI prefix; a column with other values is as in the plan.
 
     `bars` are the error bars of the values; None where a value has none.
@@ -367,16 +364,16 @@ def _column(name: str, values: Sequence[Any], unit: str, bars: Sequence[float | 
     bars = bars or [None] * len(values)
     if not all(value is None or _is_number(value) for value in values):
         words = ["-" if value is None else brief(value).strip('"') for value in values]
-        return name, unit, [f"{word} ?" if bar else word for word, bar in zip(words, bars, strict=True)]
-    least = _ROUNDING.get(unit, 0.0)
+        return name, unit.name, [f"{word} ?" if bar else word for word, bar in zip(words, bars, strict=True)]
+    least = _ROUNDING.get(unit.name, 0.0)
     values = [0.0 if value is not None and abs(value) < least else value for value in values]
-    factor, label = scaled([value for value in values if value is not None], unit)
+    factor, label = unit.scale([value for value in values if value is not None])
     cells = ["-" if value is None else f"{value * factor:.5g}" for value in values]
     tails = ["" if bar is None else f" +-{factor * bar:.2g}" if math.isfinite(bar) else " +-?" for bar in bars]
     return name, label, [cell + tail for cell, tail in zip(cells, tails, strict=True)]
 
 
-def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRow], dict[str, str]]:
+def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRow], dict[str, Unit]]:
     """Return rows with the outcomes, key figures and error bars in printed units, and the units by kind.
 
     Each run counts with its own thickness. There are no units if only some of the runs are dimensionless.
@@ -384,13 +381,11 @@ def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRo
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
         return rows, {}
     problem = plan.case(plan.points[0]).problem
-    names = {kind: unit.name for kind, unit in units(problem).items()} | {"angle": DEGREE.name}
-    if problem.thickness is None:  # then no run has one: the plan has seen to that
-        return rows, names
+    printed = {kind: unit.printed for kind, unit in units(problem).items()} | {"angle": DEGREE}
     # The thickness of the points that do not vary it; None if all do. Points of equal states share a case.
     fixed = (plan.case(point).problem.thickness for point in plan.points if THICKNESS not in point.values)
-    usual = next(fixed, None)
-    thicknesses = [usual if row.get(THICKNESS) is None else row[THICKNESS] for row in rows]
+    usual, length = next(fixed, None), measures_of(problem.unit_system, True)["length"]
+    thicknesses = [usual if row.get(THICKNESS) is None else length.in_si(row[THICKNESS]) for row in rows]
     of_thickness = {each: units(replace(problem, thickness=each)) for each in {*thicknesses}}
     found = []
     for row, thickness in zip(rows, thicknesses, strict=True):
@@ -400,13 +395,14 @@ def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRo
         factors |= {bar_column(name): factor for name, factor in factors.items()}
         known = {name: factor * row[name] for name, factor in factors.items() if row.get(name) is not None}
         found.append({**row, **known})
-    return found, names
+    return found, printed
 
 
-def unit_name(plan: Plan, value: str, unit: dict[str, str]) -> str:
+def printed_unit(plan: Plan, value: str, unit: Mapping[str, Unit]) -> Unit:
+    """Return the unit of an outcome, a key figure or "seconds" among the printed units by kind."""
     if value in plan.outcomes:
-        return plan.outcomes[value].unit_in({kind: Unit(1.0, name) for kind, name in unit.items()}).name
-    return "s" if value == "seconds" else unit.get(KEY_FIGURES[value], "")
+        return plan.outcomes[value].unit_in(unit)
+    return Unit(1.0, "s") if value == "seconds" else unit.get(KEY_FIGURES[value], PLAIN)
 
 
 def definition_words(outcome: StudyOutcome) -> str:
@@ -445,7 +441,8 @@ def envelopes(plan: Plan, rows: Sequence[TableRow], value: str) -> list[Curve]:
 
     The loads at the last corner are multiplied by the factor at failure. The bearing stress is the force on the pin
     over the diameter of the hole, per thickness. The bypass stress is the remote stress in the direction of this
-    force, or along the y axis without a force. The points stand by the angle between both.
+    force, or along the y axis without a force; they are the columns, in this order. The points stand by the angle
+    between both.
 
     Parameters
     ----------
@@ -472,11 +469,13 @@ def envelopes(plan: Plan, rows: Sequence[TableRow], value: str) -> list[Curve]:
             words = ", ".join(words_of(row[name]) for name, words_of in others.items())
             found.setdefault(words, []).append(_stresses(plan.case(point), row[value]))
     how = StrengthAssessment(**json.loads(plan.outcomes[value].definition)["how"])
-    fixed = {"criterion": strength_words(plan.case(plan.points[0]).problem, how)}
+    problem = plan.case(plan.points[0]).problem
+    fixed, stress = {"criterion": strength_words(problem, how)}, units(problem)["traction"]
     curves = []
     for words, points in found.items():
         bypass, bearing = np.array(sorted(points, key=lambda point: math.atan2(*point))).T
-        curves.append(Curve(fixed | ({"case": words} if words else {}), {BYPASS: bypass, BEARING: bearing}))
+        columns = stress.column("bypass stress", bypass) | stress.column("bearing stress", bearing)
+        curves.append(Curve(fixed | ({"case": words} if words else {}), columns))
     return curves
 
 

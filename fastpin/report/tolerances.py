@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,12 +13,13 @@ from fastpin.assess import outputs
 from fastpin.assess.outputs import NUMBER, UNKNOWN, Column, Output, list_of, map_of, table
 from fastpin.errors import InputError
 from fastpin.model import checks, synonyms
-from fastpin.model.units import scaled
-from fastpin.report.sweep import TableRow, axis_label, printed_rows, unit_name
+from fastpin.model.keys import kind_of
+from fastpin.model.units import PLAIN, Unit
+from fastpin.report.sweep import TableRow, axis_label, printed_rows, printed_unit
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.run_end import bar_column
 from fastpin.studies.tolerances import OutcomeEffect, Reached, Tolerances, effects_of, part_words
-from fastpin.studies.variation import field_kind, field_words
+from fastpin.studies.variation import field_words
 
 MOST_OUTCOMES = 4
 """Most outcomes of a figure."""
@@ -138,7 +139,7 @@ def tolerance_chart(study: Tolerances, rows: Sequence[TableRow], name: str) -> T
     plan, (found, unit) = study.plan, printed_rows(study.plan, rows)
     effect = effects_of(study, found)[name]
     outcomes = np.array([_known(row, name) for row in found])
-    factor, label = scaled([value for value in outcomes.tolist() if math.isfinite(value)], unit_name(plan, name, unit))
+    factor, label = printed_unit(plan, name, unit).scale([value for value in outcomes.tolist() if math.isfinite(value)])
     words = {field: plan.labels.get(field, field_words(field)) for field in study.limits}
     bars, clouds = [], []
     for field in effect.swings:
@@ -191,10 +192,10 @@ def tables(study: Tolerances, rows: Sequence[TableRow]) -> list[tuple[str, list[
 
 
 def _table(
-    study: Tolerances, rows: Sequence[TableRow], unit: dict[str, str], name: str, effect: OutcomeEffect
+    study: Tolerances, rows: Sequence[TableRow], unit: Mapping[str, Unit], name: str, effect: OutcomeEffect
 ) -> tuple[str, list[Column], list[str]]:
     known = [value for value in (_known(row, name) for row in rows) if math.isfinite(value)]
-    factor, label = scaled(known, unit_name(study.plan, name, unit))
+    factor, label = printed_unit(study.plan, name, unit).scale(known)
 
     def shown(value: float) -> str:
         return f"{factor * value:.5g}" if math.isfinite(value) else "-"
@@ -243,7 +244,7 @@ def _extremes(study: Tolerances, effect: OutcomeEffect, reached: Callable[[Reach
     return lines
 
 
-def _point_words(study: Tolerances, place: int, unit: dict[str, str]) -> str:
+def _point_words(study: Tolerances, place: int, unit: Mapping[str, Unit]) -> str:
     """Return the fields of a point with their units, and its part of the study. Alone means at nominal otherwise."""
     words, values = part_words(study, place), study.plan.points[place].values
     fields = [field for field in study.limits if words == f"{field} alone"] or [*study.limits]
@@ -266,7 +267,7 @@ class _Effects:
 
     study: Tolerances
     rows: Sequence[TableRow]
-    unit: dict[str, str]
+    unit: Mapping[str, Unit]
 
     def point(self, place: int) -> dict[str, Any]:
         """The part of the study and the fields of a point."""
@@ -367,6 +368,6 @@ def _unresolved(rows: Sequence[TableRow], name: str) -> int:
     return sum(row["status"] == DONE and math.isinf(row.get(bar_column(name)) or 0.0) for row in rows)
 
 
-def _field_unit(study: Tolerances, field: str, unit: dict[str, str]) -> tuple[float, str]:
+def _field_unit(study: Tolerances, field: str, unit: Mapping[str, Unit]) -> tuple[float, str]:
     """Return the factor and the label of the unit that suits the limits of a field."""
-    return scaled([study.limits[field].low, study.limits[field].high], unit.get(field_kind(field), ""))
+    return unit.get(kind_of(field), PLAIN).scale([study.limits[field].low, study.limits[field].high])

@@ -161,7 +161,7 @@ def read_profiles(group: h5py.Group) -> dict[str, Any]:
     for name, field in FIELDS.items():
         if name in group and field.is_profile:
             found[name] = _read(group[name])
-        elif name in group and field.has_section:
+        elif name in group and field.place == "section":
             found[name] = InitialGap(**{key: _read(group[name][key]) for key in ("hole", "pin") if key in group[name]})
     return found
 

@@ -215,7 +215,7 @@ def read_loop(
     if factor == 0.0:
         raise InputError("force_factor", "must not be 0")
     choices = {names[0]: ColumnChoice((displacement or "",)), names[1]: ColumnChoice((force or "",), factor)}
-    basis: Basis = "per metre" if problem.thickness is None else "with thickness"
+    basis = Basis("per metre" if problem.thickness is None else "with thickness", problem.unit_system)
     ((table, _),) = read_corners(checks.file_path("path", path), choices, basis)
     found = {name: table[:, loads.LOADS.index(name)] for name in names}
     found[names[1]] = found[names[1]] / (problem.thickness or 1.0)

@@ -25,6 +25,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, check_callable, file_path, instance, items, true_or_false, whole_number
 from fastpin.model.inputs import HDF5_SIGNATURE
+from fastpin.model.keys import kind_of
 from fastpin.model.units import Unit, units, units_per_thickness
 from fastpin.runtime.threads import cores
 from fastpin.storage import store
@@ -34,7 +35,7 @@ from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, SweepProgress
 from fastpin.studies.run_end import KEY_FIGURES, bar_column
-from fastpin.studies.variation import field_kind, field_words
+from fastpin.studies.variation import field_words
 from fastpin.studies.workers import Work, pickled_outcomes
 
 if TYPE_CHECKING:  # they import compiled code, and a plan is read without it
@@ -547,7 +548,7 @@ def _coordinate(values: Sequence[Any]) -> np.ndarray:
 
 def _field_attributes(plan: Plan, name: str) -> NamedAttributes:
     """Unit and words of a varied field. Its values are in the units of the case file."""
-    unit = units(plan.case(plan.points[0]).problem).get(field_kind(name))
+    unit = units(plan.case(plan.points[0]).problem).get(kind_of(name))
     return {"units": unit.name if unit else "", "long_name": plan.labels.get(name, field_words(name))}
 
 

@@ -26,7 +26,7 @@ from fastpin.model.checks import number
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries
 from fastpin.model.laminate import LAMINATE_KEYS, MODULI
-from fastpin.model.loads import ACTING, LOAD, LOAD_KIND, LOADS
+from fastpin.model.loads import ACTING, LOAD, LOADS
 from fastpin.model.materials import MATERIALS, NUMBERS, Material
 from fastpin.states.error_bars import check_nodes
 
@@ -286,19 +286,6 @@ _OF_BUSHES = {
 }
 """Words for fields that only a plate with a bush has."""
 
-_KIND = {
-    **{f"contact.{name}": field.kind for name, field in FIELDS.items()},
-    "pin.E": "traction",
-    **dict.fromkeys(("plate.E", "plate.E1", "plate.E2", "plate.G12"), "traction"),
-    "pin_body.bore_radius": "length",
-    "plate_body.E": "traction",
-    "plate_body.outer_radius": "length",
-    "plate_body.ring_outer_radius": "length",
-    "plate_body.reaction": "length",
-    "plate_body.interference": "displacement",
-}
-"""The kind of every field of a case that has a unit, apart from the loads."""
-
 
 _PROFILE_WORDS = {
     "ellipse": "oval",
@@ -332,12 +319,3 @@ def field_words(field: str) -> str:
         return f"{words} in load {number}" if number else words
     words = _KEYS.get(key, key.replace("_", " "))
     return f"{words} of the {_OWNERS[section]}" if section in _OWNERS else words
-
-
-def field_kind(field: str) -> str:
-    """Return the kind of a varied field; empty if it has no unit."""
-    section, key = field.split(".")[0], field.rsplit(".", 1)[-1]
-    if section == "gap":
-        lengths = ("hole", "pin", "ellipse", "size", "flat", "crown", "constant", "cosine", "sine")
-        return "displacement" if key in lengths else ""
-    return LOAD_KIND.get(key, "") if section == "load" else _KIND.get(field, "")

@@ -14,7 +14,7 @@ from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
 from fastpin.model.checks import as_toml, file_path, whole_number
 from fastpin.model.history import Block, LoadHistory
-from fastpin.model.loads import LOADS
+from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.profile import ProfileKind
 from fastpin.model.recorded import recorded_cycles
 from fastpin.tables.columns import (
@@ -27,7 +27,7 @@ from fastpin.tables.columns import (
     named_columns,
     title_and_unit,
 )
-from fastpin.tables.load_units import Basis, LoadUnit, load_unit
+from fastpin.tables.load_units import PER_METRE, Basis, LoadUnit, load_unit
 from fastpin.tables.reader import Wanted, read_table
 
 MAX_ROWS = 10_000_000
@@ -44,7 +44,7 @@ MOST_SAMPLES = 20_001
 
 
 def history_from_csv(
-    path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre", skip: int = 0
+    path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = PER_METRE, skip: int = 0
 ) -> LoadHistory:
     """Read a history as :meth:`fastpin.LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
     return LoadHistory.of_blocks(
@@ -66,8 +66,8 @@ def read_corners(
     choices : mapping of ColumnChoice or None
         The column of each load, and of counts. Other columns are not read. Without `choices` every column is a
         load.
-    basis : {"per metre", "with thickness", "dimensionless"}
-        Decides which units forces and moments may have.
+    basis : Basis
+        Decides which units forces and moments may have, and those of numbers without a unit.
     skip : int
         Lines at the beginning that are not read.
 
@@ -85,7 +85,7 @@ def read_corners(
         Wanted(
             find=(lambda titles: chosen_columns(titles, chosen)) if chosen else named_columns,
             places=known_places(chosen) if chosen else None,
-            unit=lambda name, unit: LoadUnit() if name == COUNT else load_unit(name, unit, basis),
+            unit=lambda name, unit: _load_unit(name, unit, basis),
             noun="load corners",
             most=most,
             too_many=f"more than {most:,} corners can't be read; repeat a shorter file in a case file",
@@ -110,17 +110,24 @@ def read_corners(
     return list(zip(np.split(corners, rows), counts, strict=True))
 
 
+def _load_unit(name: str, unit: str, basis: Basis) -> LoadUnit:
+    """Return the way of a load to SI units; a count has no unit, and an empty unit is that of the basis."""
+    if name == COUNT:
+        return LoadUnit()
+    return load_unit(name, unit, basis) if unit else basis.plain(LOAD_KIND[name])
+
+
 def read_samples(
     path: str | Path,
     quantity: ProfileKind = "gap",
-    basis: Basis = "per metre",
+    basis: Basis = PER_METRE,
     columns: Mapping[str, Any] | None = None,
     skip: int = 0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Read angles, rad, and values, shape (n,) each, from a CSV file.
 
     `columns` chooses the columns of :data:`COLUMNS`. Without it the file has two columns with a header, each with a
-    unit or without: degrees and m are meant then. The first `skip` lines are not read.
+    unit or without: degrees and the unit of the `basis` are meant then. The first `skip` lines are not read.
 
     Raises
     ------
@@ -166,15 +173,17 @@ def _two_columns(titles: list[str]) -> list[CsvColumn]:
 
 
 def _unit(name: str, unit: str, quantity: ProfileKind, basis: Basis) -> LoadUnit:
-    """Return the way of angles to degrees, or of values to SI units."""
+    """Return the way of angles to degrees, or of values to SI units. An empty unit is that of the basis."""
     if name == "angles":
-        if unit not in ("deg", "rad"):
+        if unit not in ("deg", "rad", ""):
             raise InputError(name, f"an angle must be in deg or rad, not {as_toml(unit)}")
         return LoadUnit(0, math.degrees(1.0)) if unit == "rad" else LoadUnit()
+    if not unit:
+        return basis.plain({"gap": "displacement", "wear": "wear coefficient"}.get(quantity, ""))
     if quantity == "friction" and unit not in ("-", "1"):
         raise InputError(name, f"friction has no unit; leave it out, not {as_toml(unit)}")
     if quantity == "wear" and unit != "1/Pa":
         raise InputError(name, f"a wear coefficient must be in 1/Pa, not {as_toml(unit)}")
-    if quantity == "gap" and basis == "dimensionless":
+    if quantity == "gap" and basis.how == "dimensionless":
         raise InputError(name, f"the gap of a problem with load_parameter has no unit; leave it out, not {unit}")
     return load_unit("ux", unit, basis) if quantity == "gap" else LoadUnit()

@@ -10,12 +10,8 @@ from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.synonyms import closest
-
-Basis = Literal["per metre", "with thickness", "dimensionless"]
-"""How loads are given: per metre of thickness, in N and N m for a given thickness, or in the paper's units."""
-
-POUND, INCH = 4.4482216152605, 0.0254
-"""A pound of force, N, and an inch, m. Both are exact."""
+from fastpin.model.unit_systems import INCH, POUND, SI, Measure
+from fastpin.model.units import measures_of
 
 
 class LoadUnit(NamedTuple):
@@ -29,6 +25,29 @@ class LoadUnit(NamedTuple):
     factor: float = 1.0
     zero: float = 0.0
 
+
+class Basis(NamedTuple):
+    """How loads are given.
+
+    Attributes
+    ----------
+    how : {"per metre", "with thickness", "dimensionless"}
+        Per metre of thickness, in N and N m for a given thickness, or in the paper's units.
+    system : str
+        The system of units of numbers without a unit, see :func:`fastpin.model.unit_systems.checked_system`.
+    """
+
+    how: Literal["per metre", "with thickness", "dimensionless"] = "per metre"
+    system: str = SI
+
+    def plain(self, kind: str) -> LoadUnit:
+        """The unit of a number without a unit."""
+        way = measures_of(self.system, self.how == "with thickness").get(kind, Measure(""))
+        return LoadUnit(way.power, way.factor)
+
+
+PER_METRE = Basis()
+"""Loads per metre of thickness in SI units."""
 
 _UNITS = {
     "traction": {
@@ -159,19 +178,19 @@ def load_unit(load: str, name: str, basis: Basis) -> LoadUnit:
     InputError
         If the load can't be in this unit. The sentence lists the units. Its field is the load.
     """
-    if basis == "dimensionless":
+    if basis.how == "dimensionless":
         words = "the loads of a problem with load_parameter have no units; leave the unit out"
         raise InputError(load, f"{words}, not {as_toml(name)}")
     kind = LOAD_KIND[load]
-    units = (_PER_METRE if basis == "per metre" else _WITH_THICKNESS)[kind]
+    units = (_PER_METRE if basis.how == "per metre" else _WITH_THICKNESS)[kind]
     if name in units:
         return units[name]
-    other = (_WITH_THICKNESS if basis == "per metre" else _PER_METRE)[kind]
+    other = (_WITH_THICKNESS if basis.how == "per metre" else _PER_METRE)[kind]
     hint = closest(name, units)
     if name in other:
         hint = (
             "; give the thickness for loads in N and N m"
-            if basis == "per metre"
+            if basis.how == "per metre"
             else "; with a thickness loads are in N and N m"
         )
     *most, last = units

@@ -81,7 +81,8 @@ class Wanted(NamedTuple):
     places : tuple of int or None
         Places of the columns in a line, if all of them are known by number. A file without a header has empty titles.
     unit : callable
-        Returns the way to SI units from the name of a column and a unit. An :class:`InputError` names allowed units.
+        Returns the way to SI units from the name of a column and a unit, which is empty where the file says none. An
+        :class:`InputError` names allowed units.
     noun : str
         The rows in messages, such as "load corners".
     most : int
@@ -258,7 +259,7 @@ class _Reading:
         units = []
         for column in columns:
             try:
-                unit = self._wanted.unit(column.name, column.unit) if column.unit else LoadUnit()
+                unit = self._wanted.unit(column.name, column.unit)
                 zero = unit.zero if column.zero is None else column.zero
                 if math.isnan(zero):
                     words = f"a column in {column.unit} needs its zero, the temperature at which the clearance is given"
