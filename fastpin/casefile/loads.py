@@ -41,8 +41,9 @@ def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
     """
     section, contact = source.section("history"), source.root.value("contact")
     given = contact if isinstance(contact, dict) else {}
-    per_metre = "with thickness" if "thickness" in given else "per metre"
-    basis = Basis("dimensionless" if "load_parameter" in given else per_metre, source.units)
+    basis = Basis("with thickness" if "thickness" in given else "per metre", source.units)
+    if "load_parameter" in given:
+        basis = Basis("dimensionless")
     if "load" in source.root and "csv" in section:
         source.report("[history]: give either csv or [[load]] blocks", "history", "csv")
         return None

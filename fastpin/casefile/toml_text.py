@@ -269,7 +269,7 @@ class CaseText:
         self.units = self.root.checked("units", checked_system) or SI
         if self.units != SI:
             self._given, ways = self.root.table, measures_of(self.units, whole)
-            tables = converted(self._given, kinds, lambda kind, number: ways[kind].in_si(number), fill=True)
+            tables = converted(self._given, kinds, lambda kind, number: ways[kind].in_si(number), unit=1.0)
             self.root = Section(self, (), tables)
 
     def _in_other_units(self, place: KeyPath, message: str) -> str:

@@ -9,17 +9,18 @@ loads that were read from a case file are. The name of a material that is not in
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
+from fastpin.bodies.body import BodyBase
 from fastpin.model import Case, LoadHistory, Material, Problem, Profile, SolveOptions, checks, loads
 from fastpin.model.case import BESIDE, beside_of
 from fastpin.model.fields import FIELDS
-from fastpin.model.units import PER_THICKNESS
+from fastpin.model.keys import CASE
+from fastpin.model.unit_systems import SI
+from fastpin.model.units import in_units
 
 PER_LINE = 8
 """Numbers of a list of loads on one line. Lines stay shorter than 200 letters."""
@@ -28,7 +29,8 @@ PER_LINE = 8
 def case_text(case: Case) -> str:
     """The text of a case file.
 
-    Every corner is written with all its loads. The cycles of the history are not marked.
+    Every corner is written with all its loads. The cycles of the history are not marked. Numbers are in the system of
+    units of the problem.
 
     Raises
     ------
@@ -36,88 +38,64 @@ def case_text(case: Case) -> str:
         If `case` is no Case, or the plate is a compliance, which has a file of its own.
     """
     checks.instance("case", case, Case, "a Case")
-    wear = {} if case.wear is None else case.wear.toml()
-    blocks = [
-        *([[f"title = {_value(case.title)}"]] if case.title else []),
-        _section("about", case.about.given()),
-        ["[pin]", *_material(case.problem.pair.pin)],
-        ["[plate]", *_material(case.problem.pair.plate)],
-        ["[contact]", *_contact(case.problem)],
-        ["[gap]", *(f"{name} = {_value(profile.toml())}" for name, profile in case.problem.gap.given.items())],
-        *_bodies(case.problem),
-        ["[[load]]", *_loads(case.history, case.problem.thickness)],
-        _section("wear", wear),
-        *(_section(name, BESIDE[name].written(value)) for name, value in beside_of(case).items()),
-        ["[solve]", *_options(case.options)],
-    ]
-    return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
+    problem = case.problem
+    tables = {
+        "about": case.about.given(),
+        "pin": problem.pair.pin.toml(),
+        "plate": problem.pair.plate.toml(),
+        "contact": _contact(problem),
+        "gap": {name: profile.toml() for name, profile in problem.gap.given.items()},
+        **{name: _body(body) for name, body in problem.given_bodies.items()},
+        "load": _loads(case.history),
+        "wear": {} if case.wear is None else case.wear.toml(),
+        **{name: BESIDE[name].written(value) for name, value in beside_of(case).items()},
+        "solve": _options(case.options),
+    }
+    head = {"title": case.title, "units": "" if problem.unit_system == SI else problem.unit_system}
+    blocks = [[f"{name} = {_value(words)}" for name, words in head.items() if words]]
+    for name, table in in_units(problem, tables, CASE).items():
+        header = "[[load]]" if name == "load" else f"[{name}]"
+        blocks.append([header, *(f"{key} = {_lines(value)}" for key, value in table.items())] if table else [])
+    return "\n\n".join("\n".join(block) for block in blocks if block) + "\n"
 
 
-def _section(name: str, entries: Mapping[str, Any]) -> list[str]:
-    return [f"[{name}]", *(f"{key} = {_value(value)}" for key, value in entries.items())]
-
-
-def _material(material: Material) -> Iterator[str]:
-    yield from (f"{name} = {_value(value)}" for name, value in material.toml().items())
-
-
-def _contact(problem: Problem) -> Iterator[str]:
-    yield f"plane = {_value(problem.pair.plane)}"
+def _contact(problem: Problem) -> dict[str, Any]:
+    found: dict[str, Any] = {"plane": problem.pair.plane}
     if problem.dimensionless:
-        yield f"load_parameter = {problem.clearance!r}"
+        found["load_parameter"] = problem.clearance
     else:
-        yield f"hole_radius = {problem.hole_radius!r}"
-        yield f"clearance = {problem.clearance!r}"
+        found |= {"hole_radius": problem.hole_radius, "clearance": problem.clearance}
     for name, field in FIELDS.items():
         value = getattr(problem, name)
-        if value is None or field.place != "[contact]" or name in ("hole_radius", "clearance"):
-            continue
-        if isinstance(value, Profile):
-            value = value.toml()
-        yield f"{name} = {_value(_whole(value, problem.thickness) if field.kind in PER_THICKNESS else value)}"
+        if value is not None and field.place == "[contact]" and name not in ("hole_radius", "clearance"):
+            found[name] = value.toml() if isinstance(value, Profile) else value
+    return found
 
 
-def _bodies(problem: Problem) -> Iterator[list[str]]:
-    for name, body in problem.given_bodies.items():
-        block = [f"[{name}]"]
-        for key, value in body.toml().items():
-            block += _material(value) if isinstance(value, Material) else [f"{key} = {_value(value)}"]
-        yield block
+def _body(body: BodyBase) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, value in body.toml().items():
+        found |= value.toml() if isinstance(value, Material) else {key: value}
+    return found
 
 
-def _loads(history: LoadHistory, thickness: float | None) -> Iterator[str]:
+def _loads(history: LoadHistory) -> dict[str, list[float]]:
     given = np.any([np.any(~np.isnan(block.given), axis=0) for block in history.blocks], axis=0)
-    for name, column, is_given in zip(loads.LOADS, history.values().T.tolist(), given, strict=True):
-        if is_given:
-            if loads.LOAD_KIND[name] in PER_THICKNESS:
-                whole = {value: _whole(value, thickness) for value in set(column)}
-                column = [whole[value] for value in column]
-            lines = [", ".join(map(repr, column[k : k + PER_LINE])) for k in range(0, len(column), PER_LINE)]
-            indented = [f"    {line}," for line in lines]
-            yield f"{name} = [{lines[0]}]" if len(lines) == 1 else "\n".join([f"{name} = [", *indented, "]"])
+    columns = zip(loads.LOADS, history.values().T.tolist(), given, strict=True)
+    return {name: column for name, column, is_given in columns if is_given}
 
 
-def _whole(value: float, thickness: float | None) -> float:
-    """The number of N, N m or N m/rad that gives `value` when it is divided by the thickness; if several, the shortest.
-
-    Rounding leaves it within two floats of the product. If no float gives `value`, it is the product.
-    """
-    if thickness is None:
-        return value
-    product = value * thickness
-    near = [product]
-    for end in (-math.inf, math.inf):
-        one = math.nextafter(product, end)
-        near += [one, math.nextafter(one, end)]
-    return min((each for each in near if each / thickness == value), key=lambda each: len(repr(each)), default=product)
+def _options(options: SolveOptions) -> dict[str, Any]:
+    given = {each.name: getattr(options, each.name) for each in fields(options)}
+    return {name: value for name, value in given.items() if value != getattr(SolveOptions(), name)}
 
 
-def _options(options: SolveOptions) -> Iterator[str]:
-    usual = SolveOptions()
-    for each in fields(options):
-        value = getattr(options, each.name)
-        if value != getattr(usual, each.name):
-            yield f"{each.name} = {_value(value)}"
+def _lines(value: object) -> str:
+    """A value as TOML; a long list of numbers on several lines."""
+    if not isinstance(value, list) or len(value) <= PER_LINE or not all(isinstance(each, float) for each in value):
+        return _value(value)
+    lines = [", ".join(map(repr, value[k : k + PER_LINE])) for k in range(0, len(value), PER_LINE)]
+    return "\n".join(["[", *(f"    {line}," for line in lines), "]"])
 
 
 def _value(value: object) -> str:

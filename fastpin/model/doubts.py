@@ -112,7 +112,7 @@ def wear_doubts(problem: Problem, wear: Wear) -> list[InputWarning]:
         return []
     unit = units(problem)["wear coefficient"]
     hint = "numbers in 1/MPa are to be multiplied by 1e-6, numbers in mm^3/(N m) by 1e-9"
-    hint = _hint(problem, "wear coefficients", "wear coefficient", f"; {hint}")
+    hint = hint if problem.unit_system == SI else f"wear coefficients are in {unit.name}"
     return [InputWarning("coefficient", f"{unit.text(most, 3)} is more than any surface wears; {hint}")]
 
 

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fastpin.model.growth import Walker
 from fastpin.model.keys import Kinds, converted
 from fastpin.model.loads import LATER, LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
@@ -189,9 +190,45 @@ def system_words(problem: Problem) -> str:
 
 
 def in_units(problem: Problem, value: Any, kinds: Kinds) -> Any:
-    """A value in SI units, such as a table of a case file, in printed units: `kinds` are those of its numbers."""
-    unit = units(problem)
-    return converted(value, kinds, lambda kind, number: unit[kind].factor * number)
+    """See :func:`in_units_of`, with the units and the thickness of a problem."""
+    return in_units_of(value, kinds, problem.unit_system, problem.thickness)
+
+
+def in_units_of(value: Any, kinds: Kinds, system: str, thickness: float | None) -> Any:
+    """A value in SI units and per thickness, such as a table of a case file, as it stands in a file with units.
+
+    Parameters
+    ----------
+    value : dict or other value
+    kinds : str or mapping
+        The kinds of its numbers, see :mod:`fastpin.model.keys`.
+    system : str
+        See :func:`fastpin.model.unit_systems.checked_system`.
+    thickness : float or None
+        Thickness of the file, m. None if it has none.
+    """
+    if system == SI and thickness is None:
+        return value
+    ways = measures_of(system, thickness is not None)
+
+    @functools.cache
+    def given(kind: str, number: float) -> float:
+        """The number in the file that is read as this one; if there are several, the shortest.
+
+        If no float near the quotient is, it is the quotient.
+        """
+        way, divisor = ways[kind], thickness if thickness is not None and kind in PER_THICKNESS else 1.0
+        if way.per_si == divisor == 1.0:
+            return number
+        guess = number * divisor * way.per_si
+        near = [guess, *(float(f"{guess:.{digits}g}") for digits in (15, 16))]
+        for end in (-math.inf, math.inf):
+            one = math.nextafter(guess, end)
+            near += [one, math.nextafter(one, end)]
+        same = (each for each in near if way.in_si(each) / divisor == number)
+        return min(same, key=lambda each: len(repr(each)), default=guess)
+
+    return converted(value, kinds, given, None if system == SI else Walker.unit)
 
 
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:

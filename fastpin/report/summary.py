@@ -18,11 +18,13 @@ from fastpin.bodies.body import BodyBase
 from fastpin.errors import ReadingError, reading
 from fastpin.model import Case, Problem, Profile, angles
 from fastpin.model.fields import FIELDS, Field
+from fastpin.model.keys import CASE
+from fastpin.model.keys import MATERIAL as MATERIAL_KINDS
 from fastpin.model.laminate import MODULI, ORDER
 from fastpin.model.loads import ACTING, LATER, LOAD_KIND, LOADS
 from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import SolveOptions
-from fastpin.model.units import DEGREE, Unit, printed_loads, units
+from fastpin.model.units import DEGREE, Unit, in_units, printed_loads, units
 from fastpin.solver.result import Result
 from fastpin.states import LoadCycle, State
 from fastpin.states.extremes import READINGS
@@ -36,19 +38,30 @@ MATERIAL = (
     Output("rigid", "truth", lambda material: material.is_rigid),
     Output(
         "E", of=lambda material: None if material.is_rigid else material.E, optional=True,
-        words="Pa; null: rigid; of a laminate: that of the isotropic plate with its contact",
+        words="null: rigid; of a laminate: that of the isotropic plate with its contact",
     ),
     Output("nu"),
-    *(Output(name, words="Pa; null: unknown", optional=True) for name in STRENGTHS),
+    *(Output(name, words="null: unknown", optional=True) for name in STRENGTHS),
     Output("expansion", words="1/K", may_lack=True),
 )  # fmt: skip
 """Outputs of a material."""
 
 
+_MATERIAL_KINDS = MATERIAL_KINDS | {"laminate": MATERIAL_KINDS | {"moduli": MATERIAL_KINDS}}
+_BODY_KINDS = {**CASE["pin_body"], **CASE["plate_body"], "material": _MATERIAL_KINDS}
+
+
+def _material(name: str, problem: Problem) -> Any:
+    """A material in printed units."""
+    parts = MATERIAL if name == "pin" else PLATE
+    return in_units(problem, outputs.document(parts, getattr(problem.pair, name), {}), _MATERIAL_KINDS)
+
+
 def body_entries(problem: Problem, name: str) -> dict[str, Any]:
-    """Return the entries of a body, with its material."""
+    """Return the entries of a body, with its material, in printed units."""
     body: BodyBase = getattr(problem, name)
-    return body.as_json(lambda material: outputs.document(PLATE, material, {})) | body.summary()
+    found = body.as_json(lambda material: outputs.document(PLATE, material, {})) | body.summary()
+    return dict(in_units(problem, found, _BODY_KINDS | {"inside": _BODY_KINDS}))
 
 
 def _in_its_unit(name: str, problem: Problem) -> Any:
@@ -57,8 +70,8 @@ def _in_its_unit(name: str, problem: Problem) -> Any:
     if isinstance(value, Profile):
         return value.toml()
     if FIELDS[name].place == "section":
-        return {key: profile.toml() for key, profile in value.given.items()} or None
-    return units(problem)[kind].factor * value if kind and value is not None else value
+        return in_units(problem, {key: each.toml() for key, each in value.given.items()}, CASE[name]) or None
+    return in_units(problem, value, kind)
 
 
 def _form(each: Field) -> outputs.Schema:
@@ -94,8 +107,8 @@ PLATE = (
 """Outputs of a material that may be a laminate."""
 
 PROBLEM = (
-    Output("pin", of=lambda problem: problem.pair.pin, parts=MATERIAL),
-    Output("plate", of=lambda problem: problem.pair.plate, parts=PLATE),
+    Output("pin", of=partial(_material, "pin"), form=outputs.schema_of(MATERIAL)),
+    Output("plate", of=partial(_material, "plate"), form=outputs.schema_of(PLATE)),
     Output("plane", "text", lambda problem: problem.pair.plane, allowed=("strain", "stress")),
     Output(
         "dundurs", of=lambda problem: problem.surfaces.dundurs(),
@@ -105,7 +118,7 @@ PROBLEM = (
             Output("convention", "text", lambda dundurs: "usual"),
         ),
     ),
-    Output("beta_star", of=lambda problem: problem.surfaces.beta_star),
+    Output("beta_star", "compliance", lambda problem: problem.surfaces.beta_star),
     *(Output(name, of=partial(_in_its_unit, name), form=_form(each), may_lack=each.place == "section")
       for name, each in FIELDS.items()),
     *(
@@ -115,8 +128,8 @@ PROBLEM = (
         )
         for name in ("pin_body", "plate_body")
     ),
-    Output("assembled_clearance"),
-    Output("press_fit_pressure"),
+    Output("assembled_clearance", "displacement"),
+    Output("press_fit_pressure", "traction"),
     Output("dimensionless", "truth"),
 )  # fmt: skip
 """Outputs of a problem."""

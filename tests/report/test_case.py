@@ -64,7 +64,7 @@ def test_a_hollow_pin_is_described() -> None:
     assert said["pin body"] == "hollow, bore radius 5 mm"
     assert said["loading"] == "uniform traction in the bore, rotation fixed at the bore"
     assert "plate body" not in said
-    assert lines(JOINED)["loading"] == "force at the centre, rotation fixed at radius 0.005976 m, the paper's datum"
+    assert lines(JOINED)["loading"] == "force at the centre, rotation fixed at radius 5.976 mm, the paper's datum"
     rigid = JOINED.replace('material = "steel"', "rigid = true")
     assert lines(rigid)["loading"] == "force at the centre, rotation fixed"
 

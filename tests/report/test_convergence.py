@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from fastpin.model.materials import MaterialPair
+from fastpin.model.units import Unit
 from fastpin.report.convergence import one_digit, reported_series, series_columns, text
 from fastpin.studies.convergence import Convergence, converge
 from tests.support.studies import CORNERS, small_problem
@@ -39,7 +40,7 @@ def test_every_verdict_has_words(study: Convergence) -> None:
 def test_small_values_have_the_digits_of_their_bar(study: Convergence) -> None:
     row = reported_series(study.studies[0], study.problem, 1)[0]
     values = (1.23456789e-20,) * len(row.values)
-    row = replace(row, unit="m", values=values, verdict="observed", limit=1.23456789e-20, bar=1e-26)
+    row = replace(row, unit=Unit(1.0, "m"), values=values, verdict="observed", limit=1.23456789e-20, bar=1e-26)
     cells = {name: column[0] for name, _, column in series_columns(study.studies[0], [row])}
     assert cells["unit"] == "pm"
     assert cells["limit"] == "1.2345679e-08"

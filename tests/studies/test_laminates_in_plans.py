@@ -8,10 +8,11 @@ from fastpin.casefile.reader import parse_case
 from fastpin.errors import CaseFileError
 from fastpin.model import Laminate
 from fastpin.model.angles import angle_at
+from fastpin.model.keys import kind_of
 from fastpin.studies.identity import canonical, canonical_json, run_id
 from fastpin.studies.plan import parse_plan
 from fastpin.studies.tolerances import parse_tolerances
-from fastpin.studies.variation import field_kind, field_words
+from fastpin.studies.variation import field_words
 
 HEAD = '[pin]\nmaterial = "steel"\n[plate]\n'
 TAIL = '\n[contact]\nplane = "stress"\nhole_radius = 3e-3\nclearance = 2e-5\nfriction = 0.2\n[[load]]\nP = 1e6\n'
@@ -98,4 +99,4 @@ def test_an_id_does_not_depend_on_the_spelling() -> None:
 def test_words_of_the_fields() -> None:
     assert field_words("plate.axis") == "axis (deg) of the plate"
     assert field_words("plate.E1") == "modulus E1 of the plate"
-    assert (field_kind("plate.E1"), field_kind("plate.axis")) == ("traction", "")
+    assert (kind_of("plate.E1"), kind_of("plate.axis")) == ("modulus", "")

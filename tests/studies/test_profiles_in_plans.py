@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from fastpin.model.keys import kind_of
 from fastpin.studies.plan import Plan, parse_plan
-from fastpin.studies.variation import field_kind, field_words
+from fastpin.studies.variation import field_words
 from tests.support.case_texts import PRESSED
 from tests.support.faults import fault_of
 
@@ -97,6 +98,6 @@ def test_a_changed_file_of_samples_is_noticed(tmp_path: Path) -> None:
 def test_axes_have_words_and_units() -> None:
     assert field_words("gap.hole.ellipse") == "oval of the hole"
     assert field_words("contact.friction.2.stop") == "stop (deg) of the friction, term 2"
-    assert (field_kind("gap.pin.flat"), field_kind("gap.pin.centre"), field_kind("gap.hole")) == (
+    assert (kind_of("gap.pin.flat"), kind_of("gap.pin.centre"), kind_of("gap.hole")) == (
         "displacement", "", "displacement",
     )  # fmt: skip
