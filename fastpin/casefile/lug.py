@@ -15,6 +15,7 @@ from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.lugs.outline import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
 from fastpin.model.checks import as_toml, choice, file_path, number, positive, string, whole_number
+from fastpin.model.keys import LUG
 from fastpin.model.materials import MATERIALS, PLANES
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
 
@@ -76,6 +77,7 @@ def parse_lug(text: str, name: str = "lug file") -> LugFile:
 
 
 def _lug_file(source: CaseText) -> LugFile | None:
+    source.to_si(LUG, False)
     source.check_sections(LUG_KEYS, BLOCKS)
     title = source.root.checked("title", string) or ""
     plate = source.section("plate", required=True)

@@ -18,6 +18,7 @@ from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, true_or_false
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import LAWS, KnownLaw, known_law
+from fastpin.model.keys import ANY, MATERIAL
 from fastpin.model.laminate import ALONG_LOAD, LAMINATE_KEYS, MODULI, Laminate
 from fastpin.model.layup import checked_angles
 from fastpin.model.materials import (
@@ -31,6 +32,7 @@ from fastpin.model.materials import (
 )
 from fastpin.model.ply import PLIES, PLY_KEYS, PLY_NUMBERS, STRENGTH_KEYS, Ply, ply_from
 from fastpin.model.synonyms import closest
+from fastpin.model.unit_systems import SI
 
 FILE_KEYS = ("E", "nu", "yield_strength", "ultimate_strength", "expansion", "fatigue", "growth", "source")
 """Keys of a material in a file of materials."""
@@ -94,6 +96,8 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
     inner = Section(source, (section.name, "fatigue"), table)
     inner.check_keys(_FATIGUE_KEYS, f" in fatigue of [{section.name}]")
     given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
+    if source.units != SI and "curve_a" in given and "curve_b" not in given:
+        section.report("fatigue: curve_a needs curve_b beside it in a file with units", "fatigue")
     return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": "", "curve": ""})
 
 
@@ -266,7 +270,10 @@ def _materials_in(source: CaseText) -> dict[str, Material]:
     found = {}
     if not source.root.table and not source.faults:
         source.report("no materials: a material is a section, such as [my-alloy], with E and nu")
+    source.to_si({ANY: MATERIAL}, False)
     for name, table in source.root.table.items():
+        if name == "units":
+            continue
         if not isinstance(table, dict):
             source.report(
                 f"{name}: must be a section [{name}] with E and nu, not {written(name, table) or as_toml(table)}", name

@@ -159,7 +159,7 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     is_dimensionless = isinstance(contact, dict) and "load_parameter" in contact
     if is_dimensionless and source.root.value("units") not in (None, SI):
         source.report(f"units: {NO_UNITS}", "units")
-    else:
+    elif not is_dimensionless:
         source.to_si(CASE, isinstance(contact, dict) and "thickness" in contact)
     shared, tables = shared or SharedParts(), source.root.table
     shared.part("keys", source, _keys_of(tables), lambda: _check_keys(source))

@@ -20,7 +20,7 @@ from fastpin.model.checks import as_toml, choice, instance, number, shortened, w
 from fastpin.model.inputs import HDF5_SIGNATURE, open_input
 from fastpin.model.keys import converted
 from fastpin.model.synonyms import closest, meant
-from fastpin.model.unit_systems import SI, checked_system
+from fastpin.model.unit_systems import SI, checked_system, is_system
 from fastpin.model.units import measures_of
 
 MOST_BYTES = 4_000_000
@@ -256,8 +256,8 @@ class CaseText:
         if (line, message) not in self.faults:
             self.faults.append((line, message))
 
-    def to_si(self, kinds: Mapping[str, Any], whole: bool) -> None:
-        """Replace the numbers of the tables, which are in the units of the key ``units``, by numbers in SI units.
+    def to_si(self, kinds: Mapping[str, Any], whole: bool, system: object = None) -> None:
+        """Replace the numbers of the tables by numbers in SI units.
 
         Parameters
         ----------
@@ -265,8 +265,11 @@ class CaseText:
             The kind of each number, see :mod:`fastpin.model.keys`.
         whole : bool
             Whether forces are those of the whole thickness.
+        system : str, optional
+            The system of units of the tables; that of the key ``units`` unless given.
         """
-        self.units = self.root.checked("units", checked_system) or SI
+        given = self.root.checked("units", checked_system) or SI
+        self.units = system if isinstance(system, str) and is_system(system) else given
         if self.units != SI:
             self._given, ways = self.root.table, measures_of(self.units, whole)
             tables = converted(self._given, kinds, lambda kind, number: ways[kind].in_si(number), unit=1.0)

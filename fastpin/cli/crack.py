@@ -14,7 +14,8 @@ from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
 from fastpin.model.growth import LAWS
-from fastpin.model.units import units
+from fastpin.model.keys import CASE
+from fastpin.model.units import from_units, units
 
 
 def run(options: argparse.Namespace) -> int:
@@ -52,9 +53,10 @@ def _how(options: argparse.Namespace, case: Case) -> CrackGrowth:
     entries = {} if known.crack is None else known.crack.entries()
     given = {"first": options.first, "last": options.last, "theta": options.at, "body": options.body}
     given |= {"angle": options.angle}
-    entries |= {name: value for name, value in given.items() if value is not None}
     keys = dict.fromkeys(["law", *(name for _, names, _ in LAWS.values() for name in names)])
     law = {name: value for name in keys if (value := getattr(options, name, None)) is not None}
     if law:
-        entries["law"] = {"law": "walker"} | law
+        given["law"] = {"law": "walker"} | law
+    given = from_units(case.problem, {name: value for name, value in given.items() if value is not None}, CASE["crack"])
+    entries |= given
     return crack_from(**entries)

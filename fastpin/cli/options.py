@@ -179,7 +179,13 @@ def add_wear(commands: Any) -> None:
     wear = _command(commands, "wear", "wear", "run", words)
     _option(wear, "case", None, "case file (TOML), with the section [wear], or with --coefficient", Path)
     _option(wear, "--cycles", "N", "number of cycles, such as 1e5", literal)
-    _option(wear, "--coefficient", "K", "wear coefficient of both bodies together, 1/Pa", literal)
+    _option(
+        wear,
+        "--coefficient",
+        "K",
+        "wear coefficient of both bodies together, 1/Pa, or in the units of the case",
+        literal,
+    )
     _option(wear, "--law", "LAW", "archard: per pressure and slip; energy: per friction energy")
     _option(wear, "--at", "N,N", "cycles after which profile and states are stored")
     words = "largest error of the worn gap by cycles that stand for many (default 0.01); 0 solves every cycle"
@@ -229,14 +235,15 @@ _LAW_WORDS = {
     "stress_level": "NASGRO's largest stress over the flow stress (default 0.3)",
     "intrinsic_length": "El Haddad's length of the threshold of short cracks, m (default 0)",
     "toughness": "K at which the plate breaks, Pa sqrt(m)",
-    "unit": "range that C belongs to, Pa sqrt(m) (default 1e6)",
+    "unit": "range that C belongs to, Pa sqrt(m) (default 1e6; 1 in a system of units)",
 }
 """Help of the constants of the laws of growth."""
 
 
 def add_crack(commands: Any) -> None:
     """Add ``crack``."""
-    crack = _command(commands, "crack", "crack", "run", "grow a crack from the hole under the loads of a result")
+    words = "grow a crack from the hole under the loads of a result; numbers are in the units of its case"
+    crack = _command(commands, "crack", "crack", "run", words)
     _option(crack, "result", "FILE", "HDF5 file (run -o FILE)", Path)
     whose = "default: [crack] of the case"
     for name, words in (

@@ -11,6 +11,7 @@ from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_files
 from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS, kinds_with
+from fastpin.model.units import from_units
 
 
 def run(options: argparse.Namespace) -> int:
@@ -21,7 +22,12 @@ def run(options: argparse.Namespace) -> int:
     is_case = is_text and "case" in KINDS[options.kind].sources
     _check(options, is_case)
     figure = Path(f"{options.kind}.png") if options.output is None else options.output
-    title = "" if is_case else storage.stored_case(options.result).title
+    title = ""
+    if not is_case:
+        stored = storage.stored_case(options.result)
+        title = stored.title
+        if options.depth is not None and options.kind != "profile":  # which takes radii
+            options.depth = from_units(stored.problem, options.depth, "length")
     if options.interface == "seat":
         title = seat_title(title)
     check_outputs({"--output": figure, "--csv": options.csv}, figures=("--output",))

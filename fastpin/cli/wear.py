@@ -13,6 +13,8 @@ from fastpin.cli import terminal
 from fastpin.cli.options import literal
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.errors import InputError
+from fastpin.model.keys import CASE
+from fastpin.model.units import from_units
 from fastpin.report.states import way_on
 from fastpin.wear_lives import WearResult
 
@@ -24,6 +26,7 @@ def run(options: argparse.Namespace) -> int:
     given = {name: getattr(options, name) for name in ("cycles", "coefficient", "law", "tolerance")}
     given["at"] = None if options.at is None else [literal(part) for part in options.at.split(",")]
     given = {name: value for name, value in given.items() if value is not None}
+    given = from_units(case.problem, given, CASE["wear"])
     if "coefficient" in given:
         how |= {"pin": None, "plate": None}
     if "at" in how and isinstance(given.get("cycles"), (int, float)):

@@ -51,7 +51,11 @@ KIND_OPTIONS = {
     ),
     "extent": KindOption("map: outer radius (default 2)", "RADII", "number"),
     "angle": KindOption("profile: place (default: the largest hoop stress)", "DEG", "number"),
-    "depth": KindOption("profile: largest depth, in radii; fatigue, strength: depth of the points, m", "D", "number"),
+    "depth": KindOption(
+        "profile: largest depth, in radii; fatigue, strength: depth of the points, m, or the length of the case's units",
+        "D",
+        "number",
+    ),
     "criterion": KindOption(
         "fatigue, damage: smith-watson-topper (default), fatemi-socie, findley, ...; "
         "strength: that of [strength], else hashin, ..."

@@ -25,6 +25,7 @@ from fastpin.model import LOADS, Case, Grid, Problem, angles
 from fastpin.model.doubts import doubts
 from fastpin.model.options import ALL_ROUND, SolveOptions
 from fastpin.model.profile import CALLED
+from fastpin.model.unit_systems import SI
 from fastpin.model.units import FIXED_PREFIXES, units
 from fastpin.report.case import profile_words
 from fastpin.sessions import Session
@@ -415,7 +416,7 @@ def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer
     return {
         "title": title,
         "units": {kind: asdict(unit) for kind, unit in units(problem).items()},
-        "prefixes": {} if problem.dimensionless else FIXED_PREFIXES,
+        "prefixes": FIXED_PREFIXES if problem.unit_system == SI and not problem.dimensionless else {},
         "dimensionless": problem.dimensionless,
         "friction": problem.most_friction,
         "radius": problem.hole_radius,

@@ -189,6 +189,15 @@ def system_words(problem: Problem) -> str:
     return "SI units" if problem.unit_system == SI else f"units of {problem.unit_system}"
 
 
+def from_units(problem: Problem, value: Any, kinds: Kinds) -> Any:
+    """A value whose numbers are in the units of a problem, such as options of the command line, in SI units.
+
+    `kinds` are those of its numbers. None of them is per thickness.
+    """
+    ways, unit = measures_of(problem.unit_system, False), None if problem.unit_system == SI else 1.0
+    return converted(value, kinds, lambda kind, number: ways[kind].in_si(number), unit)
+
+
 def in_units(problem: Problem, value: Any, kinds: Kinds) -> Any:
     """See :func:`in_units_of`, with the units and the thickness of a problem."""
     return in_units_of(value, kinds, problem.unit_system, problem.thickness)
@@ -209,26 +218,22 @@ def in_units_of(value: Any, kinds: Kinds, system: str, thickness: float | None) 
     """
     if system == SI and thickness is None:
         return value
-    ways = measures_of(system, thickness is not None)
+    ways, each = measures_of(system, thickness is not None), thickness or 1.0
 
-    @functools.cache
     def given(kind: str, number: float) -> float:
-        """The number in the file that is read as this one; if there are several, the shortest.
+        return ways[kind].given(number, each if kind in PER_THICKNESS else 1.0)
 
-        If no float near the quotient is, it is the quotient.
-        """
-        way, divisor = ways[kind], thickness if thickness is not None and kind in PER_THICKNESS else 1.0
-        if way.per_si == divisor == 1.0:
-            return number
-        guess = number * divisor * way.per_si
-        near = [guess, *(float(f"{guess:.{digits}g}") for digits in (15, 16))]
-        for end in (-math.inf, math.inf):
-            one = math.nextafter(guess, end)
-            near += [one, math.nextafter(one, end)]
-        same = (each for each in near if way.in_si(each) / divisor == number)
-        return min(same, key=lambda each: len(repr(each)), default=guess)
+    return converted(value, kinds, functools.cache(given), None if system == SI else Walker.unit)
 
-    return converted(value, kinds, given, None if system == SI else Walker.unit)
+
+def in_other_units(tables: Mapping[str, Any], kinds: Kinds, old: str, new: str, whole: bool) -> dict[str, Any]:
+    """Tables of a file in an `old` system of units as they stand in a `new` one; see :func:`measures_of`."""
+    read, written = measures_of(old, whole), measures_of(new, whole)
+    unit = Walker.unit if old == SI else 1.0
+    found: dict[str, Any] = converted(
+        tables, kinds, lambda kind, number: written[kind].given(read[kind].in_si(number)), unit
+    )
+    return found | {"units": new}
 
 
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:

@@ -48,7 +48,7 @@ MATERIAL = (
 
 
 _MATERIAL_KINDS = MATERIAL_KINDS | {"laminate": MATERIAL_KINDS | {"moduli": MATERIAL_KINDS}}
-_BODY_KINDS = {**CASE["pin_body"], **CASE["plate_body"], "material": _MATERIAL_KINDS}
+_BODY_KINDS = {**CASE["pin_body"], **CASE["plate_body"], "material": _MATERIAL_KINDS, "hole_radius": "length"}
 
 
 def _material(name: str, problem: Problem) -> Any:

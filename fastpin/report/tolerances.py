@@ -308,7 +308,7 @@ _POINT = (Output("part", "text"), Output("values", form=map_of(NUMBER, "the fiel
 _SPAN = [Output(end, parts=(Output("value"), *_POINT)) for end in ("smallest", "largest")]
 
 OUTCOME = (
-    Output("unit", "text", lambda found: unit_name(found[0].study.plan, found[1], found[0].unit)),
+    Output("unit", "text", lambda found: printed_unit(found[0].study.plan, found[1], found[0].unit).name),
     Output("nominal", of=lambda found: found[2].nominal, optional=True),
     Output(
         "fields", "map", _of_fields, "the effect of each field, the largest swing first",

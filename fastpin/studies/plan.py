@@ -36,7 +36,9 @@ from fastpin.casefile.toml_text import (
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model import LOADS, Case, checks
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
+from fastpin.model.keys import OUTCOMES
 from fastpin.model.synonyms import closest
+from fastpin.model.unit_systems import checked_system
 from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, bar_faults, has_strengths, outcomes_from, outcomes_in_text
 from fastpin.studies.run_end import KEY_FIGURES
@@ -63,7 +65,7 @@ SweepProgress = Callable[[int, int], None]
 LONGEST_LABEL = 80
 """Most letters of a label. It stands beside an axis of a figure."""
 
-ROOT_KEYS = {name: name for name in ("title", "case")} | {
+ROOT_KEYS = {name: name for name in ("title", "units", "case")} | {
     "grid": "[grid]", "list": "[[list]]", "outcomes": "[outcomes]", "labels": "[labels]"
 }  # fmt: skip
 """Keys of a plan, as they are written."""
@@ -348,13 +350,18 @@ def _varied(section: str, key: str) -> str:
 
 
 def base_case(source: CaseText, folder: Path) -> BaseCase | None:
-    """Read the base case, and report its faults on the line of the plan's ``case``."""
-    name = source.root.checked("case", checks.any_text)
+    """Read the base case, and report its faults on the line of the plan's ``case``.
+
+    Numbers of a plan are in the units of its key ``units``, or else in those of the case.
+    """
+    name, units = source.root.checked("case", checks.any_text), source.root.checked("units", checked_system)
     try:
         if name is None:
-            return BaseCase(EXAMPLE, "built-in case", folder)
-        path = folder / name
-        return BaseCase(read_text(path), name, path.parent)
+            base = BaseCase(EXAMPLE, "built-in case", folder, units or "")
+        else:
+            base = BaseCase(read_text(folder / name), name, (folder / name).parent, units or "")
+        source.to_si({"outcomes": OUTCOMES}, base.is_whole, base.text.root.table.get("units"))
+        return base
     except CaseFileError as error:
         for line, message in error.problems:
             source.report(f"{error.field}{f', line {line}' if line else ''}: {message}", "case")

@@ -27,6 +27,8 @@ from fastpin.errors import InputError
 from fastpin.model import Case, Problem, points
 from fastpin.model.checks import as_toml, check_callable, file_path, string, true_or_false, whole_number
 from fastpin.model.doubts import warn_of
+from fastpin.model.keys import kind_of
+from fastpin.model.units import in_units
 from fastpin.studies.index import DONE
 from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
 from fastpin.studies.plan import (
@@ -439,6 +441,7 @@ def _nominal(base: BaseCase, case: Case, name: str) -> float | None:
         owner = owners[section]
         written = owner.toml() if section == "plate" else {}  # the axis of a laminate is in degrees there
         value = written.get(keys[0], getattr(owner, keys[0], getattr(getattr(owner, "material", None), keys[0], None)))
+        value = in_units(problem, value, kind_of(name))
     is_number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     return value if is_number else None
 

@@ -25,9 +25,12 @@ from fastpin.model.case import Case, beside_of
 from fastpin.model.checks import number
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries
+from fastpin.model.keys import CASE, MATERIAL
 from fastpin.model.laminate import LAMINATE_KEYS, MODULI
 from fastpin.model.loads import ACTING, LOAD, LOADS
 from fastpin.model.materials import MATERIALS, NUMBERS, Material
+from fastpin.model.unit_systems import SI, is_system
+from fastpin.model.units import in_other_units, in_units_of
 from fastpin.states.error_bars import check_nodes
 
 LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
@@ -40,6 +43,13 @@ FACTORS = {"loads": LOADS[:ACTING], **{f"loads.{name}": (name,) for name in LOAD
 class BaseCase:
     """The base case of a plan.
 
+    Attributes
+    ----------
+    text : CaseText
+        Its text, in the units of the plan.
+    is_whole : bool
+        Whether it has a thickness.
+
     Parameters
     ----------
     text : str
@@ -48,6 +58,8 @@ class BaseCase:
         Name of the case in messages.
     folder : Path
         Folder of the CSV files and compliances with relative paths.
+    units : str
+        The system of units of varied fields and of outputs; that of the case unless given.
 
     Raises
     ------
@@ -55,11 +67,16 @@ class BaseCase:
         With the faults of the TOML text.
     """
 
-    def __init__(self, text: str, name: str, folder: Path) -> None:
+    def __init__(self, text: str, name: str, folder: Path, units: str = "") -> None:
         self.name = name
         self.text = CaseText(text)
         if self.text.faults:
             raise CaseFileError(name, self.text.faults)
+        tables = self.text.root.table
+        contact, own = tables.get("contact"), tables.get("units", SI)
+        self.is_whole = isinstance(contact, dict) and "thickness" in contact
+        if units and units != own and is_system(own):
+            self.text = self.text.with_tables(in_other_units(tables, CASE, own, units, self.is_whole))
         self._folder = folder
         self._materials: Mapping[str, Material] = MATERIALS
         with contextlib.suppress(TooManyFaultsError):  # every variation reports these faults
@@ -236,12 +253,14 @@ def _make_room(tables: dict[str, Any], name: str, value: Any, materials: Mapping
     if key in ("E", "nu") and isinstance(material_name, str) and material_name in materials:
         # One constant is varied. The other constants of the material stay.
         material = materials[material_name]
-        body |= {"E": material.E, "nu": material.nu}
+        constants: dict[str, Any] = {"E": material.E, "nu": material.nu, **material.numbers}
         if material.fatigue is not None:
-            body.setdefault("fatigue", material.fatigue.given())
+            constants["fatigue"] = material.fatigue.given()
         if material.growth is not None:
-            body.setdefault("growth", law_entries(material.growth))
-        body |= {name: value for name, value in material.numbers.items() if name not in body}
+            constants["growth"] = law_entries(material.growth)
+        system = tables.get("units", SI)
+        constants = in_units_of(constants, MATERIAL, system if is_system(system) else SI, None)
+        body |= {name: value for name, value in constants.items() if name in ("E", "nu") or name not in body}
     for replaced in _REPLACED.get(key, ()):
         body.pop(replaced, None)
 

@@ -1,5 +1,6 @@
 // Numbers with units and SI prefixes, as the tables of fastpin print them. A unit has a name, and a factor that takes
-// values of the server to it: with a thickness, forces are in N here and in N/m there.
+// values of the server to it: with a thickness, forces are in N here and in N/m there. A unit that the case chooses has no
+// prefix.
 
 const PREFIXES = { 9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n", "-12": "p" };
 const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "F R beta*", "1/beta*", "deg"]);
@@ -13,8 +14,8 @@ export function fixPrefixes(exponents) {
 }
 
 // A factor and a unit in which values up to `largest` read well.
-export function scaled(largest, { name, factor }) {
-  if (WITHOUT.has(name)) return withExponent(name, factor, 0);
+export function scaled(largest, { name, factor, is_chosen: isChosen }) {
+  if (isChosen || WITHOUT.has(name)) return withExponent(name, factor, 0);
   if (name in prefixes) return withExponent(name, factor, prefixes[name]);
   if (!(largest > 0) || !isFinite(largest)) return withExponent(name, factor, 0);
   const [power, lowest] = POWERS[name] ?? [1, 0];
