@@ -14,9 +14,9 @@ from fastpin.assess.outputs import ROUNDING, UNKNOWN, WHOLE, Curve, Output, map_
 from fastpin.assess.outputs import document as document_of
 from fastpin.model import angles, loads
 from fastpin.model.problem import Problem
-from fastpin.model.units import units
+from fastpin.model.units import PLAIN, units
 from fastpin.states.cycles import CYCLE_KINDS, Cycle
-from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
+from fastpin.states.load_cycle import NODE_KINDS, LoadCycle, NodeBehaviour
 from fastpin.states.quantities import load_point, sizes
 from fastpin.states.regimes import REGIMES
 from fastpin.storage.files import replacing
@@ -114,9 +114,12 @@ def write_csv(cycle: LoadCycle, path: Path) -> None:
     InputError
         If the file can't be written.
     """
-    columns = {name: column for name, column in cycle.columns().items() if name != "theta"}
-    header = [f"{name} [{unit}]" if unit else name for name, (_, unit) in columns.items()]
-    cells: dict[str, list[Any]] = {name: values.tolist() for name, (values, _) in columns.items()}
+    unit, cells, header = units(cycle.states[0].problem), dict[str, list[Any]](), []
+    for name, (values, _) in cycle.columns().items():
+        of_name = unit.get(NODE_KINDS[name], PLAIN)
+        header.append(f"{name} [{of_name.name}]" if of_name.name else name)
+        cells[name] = (of_name.factor * values).tolist()
+    del cells["theta"], header[0]
     cells["behaviour"] = [WORDS[NodeBehaviour(value)] for value in cells["behaviour"]]
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")

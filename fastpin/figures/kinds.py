@@ -52,7 +52,7 @@ KIND_OPTIONS = {
     "extent": KindOption("map: outer radius (default 2)", "RADII", "number"),
     "angle": KindOption("profile: place (default: the largest hoop stress)", "DEG", "number"),
     "depth": KindOption(
-        "profile: largest depth, in radii; fatigue, strength: depth of the points, m, or the length of the case's units",
+        "profile: largest depth, in radii; fatigue, strength: depth of the points, m or in the units of the case",
         "D",
         "number",
     ),

@@ -34,7 +34,7 @@ skipped    A load of a drag that was passed over because a later one came.
 =========  ==========================================================================================================
 
 Values are per thickness in SI units, as in Python. A unit of the page is an object with ``name`` and ``factor``: a
-value times the factor is in this unit, in N with a thickness. If ``is_chosen``, the case chooses it, and it gets no prefix.
+value times the factor is in this unit, in N with a thickness. If ``is_chosen``, the case chooses it: no prefix.
 Controls and ``units`` of a case name their units so. Its ``prefixes`` are the choices of prefixes that do not depend on
 the size of a value.
 

@@ -235,7 +235,7 @@ def _of_contact(problem: Problem) -> Iterator[Doubt]:
         words = f"{friction:g} is above 2, more than dry metals have"
         yield "friction", f"{words}; did you mean {percent:g} %, which is {percent / 100:g}?"
     if not problem.dimensionless and problem.clearance > 0.5 * problem.hole_radius:
-        size, radius = (_text(problem, "length", each) for each in (problem.clearance, problem.hole_radius))
+        size, radius = (_text(problem, "length", each).split()[0] for each in (problem.clearance, problem.hole_radius))
         words = f"{size} is more than half of the hole radius {radius}"
         yield "clearance", f"{words}; clearance is the hole radius minus the pin radius"
     if not problem.pair.plate.is_isotropic and laminate is not None and not laminate.is_isotropic_contact:

@@ -73,6 +73,6 @@ FIELDS = {
         also="initial_gap profile profiles form ovality roundness initial_profile",
         place="section",
     ),
-    "unit_system": Field(in_ids="never", place="root", also="units unit system unitsystem"),
+    "unit_system": Field(in_ids="never", place="root"),
 }
 """The fields by name, in the order of case files."""

@@ -60,6 +60,7 @@ _SYNONYMS: dict[str, str] = {
     "sxy": "tau tau_xy sigma_xy shear_stress s_xy txy",
     "ux": "u u_x dx displacement_x displacement",
     "uy": "v u_y dy displacement_y",
+    "units": "unit system unit_system unitsystem unit_sys",
     "repeat": "cycles n_cycles count times number_of_cycles repeats",
     "points": "n_points steps",
     "phase": "phi phase_angle lag",

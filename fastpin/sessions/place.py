@@ -101,7 +101,7 @@ def changed_problem(problem: Problem, changes: dict[str, Any]) -> Problem:
     InputError
         If there is no such field, or its value can't be used.
     """
-    names = [field.name for field in fields(Problem) if field.name not in ("dimensionless", "thickness")]
+    names = [field.name for field in fields(Problem) if field.name not in ("dimensionless", "thickness", "unit_system")]
     if not changes:
         raise InputError("change", f"give at least one field of the problem: {', '.join(names)}")
     for name in changes:

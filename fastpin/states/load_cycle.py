@@ -48,6 +48,17 @@ class NodeBehaviour(IntEnum):
     """Closed at some time and open at another."""
 
 
+NODE_KINDS = {
+    "theta": "angle",
+    "behaviour": "",
+    "slip_range": "displacement",
+    "slip_distance": "displacement",
+    "friction_energy": "energy density",
+    **dict.fromkeys(("pressure_min", "pressure_max", "shear_min", "shear_max"), "traction"),
+}
+"""The kinds of the values of all nodes of a cycle by name, see :meth:`LoadCycle.columns`."""
+
+
 @dataclass(frozen=True, eq=False)
 class Loop(ReadOnly):
     """A load against the displacement on which it does work, at the states of a cycle.
@@ -321,20 +332,13 @@ class LoadCycle:
 
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
         """The values of all nodes, shape (n,), and their unit, by name. Quantities that are not known are left out."""
-        unit = units_per_thickness(self.states[0].problem)
+        unit = {**units_per_thickness(self.states[0].problem), "angle": "rad", "": ""}
         pressures, shears = self.pressure_extremes, self.shear_extremes
-        found = {
-            "theta": (self.theta, "rad"),
-            "behaviour": (self.behaviour, ""),
-            "slip_range": (self.slip_range, unit["displacement"]),
-            "slip_distance": (self.slip_distance, unit["displacement"]),
-            "friction_energy": (self.friction_energy, unit["energy density"]),
-            "pressure_min": (pressures[0], unit["traction"]),
-            "pressure_max": (pressures[1], unit["traction"]),
-            "shear_min": (shears[0], unit["traction"]),
-            "shear_max": (shears[1], unit["traction"]),
-        }
-        return {name: (values, label) for name, (values, label) in found.items() if values is not None}
+        values = (
+            self.theta, self.behaviour, self.slip_range, self.slip_distance, self.friction_energy, *pressures, *shears
+        )  # fmt: skip
+        found = zip(NODE_KINDS.items(), values, strict=True)
+        return {name: (each, unit[kind]) for (name, kind), each in found if each is not None}
 
     def to_dataframe(self) -> pandas.DataFrame:
         """The values of :meth:`columns` with a row for each node; ``frame.attrs["units"]`` names the units.

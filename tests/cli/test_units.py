@@ -5,81 +5,20 @@ power of two. So all states have the same bits, and each printed number is eithe
 times the other.
 """
 
-import contextlib
 import csv
-import functools
-import io
 import json
-import math
 import re
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
-from matplotlib.text import Text
 
-from fastpin import casefile, figures
+from fastpin import casefile
 from fastpin.assess.outputs import json_ready
 from fastpin.cli import options
-from fastpin.cli.main import main
-from fastpin.figures.kinds import KINDS
 from fastpin.live.contact import LiveContact
 from fastpin.live.protocol import Message
-from fastpin.studies import workers
-from tests.support.plans import run_here
 from tests.support.tiers import some_survey
-
-T = 2.0**-7
-
-CASE = """
-[pin]
-material = "steel"
-[plate]
-E = 70e9
-nu = 0.33
-fatigue = { fatigue_strength = 1.1e9, strength_exponent = -0.124, fatigue_ductility = 0.22, ductility_exponent = -0.59 }
-[contact]
-hole_radius = 0.01
-clearance = 2e-5
-friction = 0.4
-pin_load = "centre"
-rotation = "spring"
-%s
-[gap]
-hole = { ellipse = 1e-6 }
-[[load]]
-P = [%r]
-sxx = 2e6
-[[load]]
-Q = [%r, %r]
-repeat = 2
-[solve]
-nodes = 21
-arc = [-3.1, 0.1]
-between = 1
-slip_sums = true
-"""
-
-PLAN = """
-case = "case.toml"
-[grid]
-contact.friction = [0.3, 0.4]
-load.1.P = [%r, %r]
-[outcomes]
-heat = { cycle = "dissipation" }
-largest_Q = { quantity = "Q", take = "largest" }
-"""
-
-LIMITS = """
-case = "case.toml"
-samples = 4
-[tolerances]
-contact.friction = { from = 0.3, to = 0.5 }
-loads = { from = 0.9, to = 1.1 }
-[outcomes]
-heat = { cycle = "dissipation" }
-"""
+from tests.support.unit_walk import MOST_ROWS, PARTS, UNIT, T, Walk, is_times, leaves, walk, words
 
 PER_METRE = re.compile(r"(?<![\w/])[GMkmunpµ]?(N/m|J/m(?![\^²])|N/rad)(?!\w)")
 """Units per thickness. J/m^2 of the friction energy at a place is none."""
@@ -104,104 +43,6 @@ WITHOUT_UNITS = {
 """Commands that are not walked, with a reason each. Every other command must be in :data:`PARTS`."""
 
 
-def words(thick: bool) -> tuple[str, str]:
-    """The text of the case and of its plan."""
-    forces = [2.0**12, 2.0**10, -(2.0**10), 3.0 * 2.0**10]
-    p, right, left, other = forces if thick else [force / T for force in forces]
-    spring = f"hub_stiffness = {1e4 if thick else 1e4 / T!r}" + (f"\nthickness = {T!r}" if thick else "")
-    return CASE % (spring, p, right, left), PLAN % (p, other)
-
-
-MOST_ROWS = 500
-"""Rows of a table that are compared: a map has thousands."""
-
-
-class Walk:
-    """All outputs of all commands for one case: printed and drawn texts by command, and files."""
-
-    def __init__(self, folder: Path, thick: bool) -> None:
-        folder.mkdir()
-        self.folder = folder
-        self.commands: dict[str, str] = {}
-        case, plan = words(thick)
-        (folder / "case.toml").write_text(case)
-        (folder / "plan.toml").write_text(plan)
-        (folder / "limits.toml").write_text(LIMITS)
-
-    def files(self, suffix: str) -> dict[str, str]:
-        paths = sorted(self.folder.rglob(f"*{suffix}"))
-        return {str(path.relative_to(self.folder)): path.read_text() for path in paths}
-
-
-STATES = """
-check case.toml
-run case.toml --nodes 101 --error-bars --json run.json --cycle-csv run.csv
-run case.toml -o a.h5 --plot b.svg --record record.html --cycles a.svg
-show a.h5 --json show.json
-"""
-
-STUDY = """
-converge case.toml --nodes 51,71,91 --corner 2 --csv converge.csv --json converge.json --plot c.svg
-compliance --example
-"""
-
-RESULT = "run case.toml -o a.h5"
-LIFE = "wear case.toml --cycles 2 --coefficient 1e-13 -o life.h5 --json wear.json --record record-life.html"
-
-LAW = "--first 1e-4 --last 1e-3 --C 1e-10 --m 3 --at 80"
-
-STUDIES = """
-sweep plan.toml --table --plot heat.svg --value heat
-sweep plan.toml --table sweep.csv --plot curves.svg --value dissipation
-report plan --plan plan.toml -o sweep.html
-tolerances limits.toml --plot tornado.svg --scatter samples.svg --json limits.json
-report limits -o limits.html
-"""
-
-
-def plots(subject: str) -> list[str]:
-    """The commands that draw every kind of figure of a result, or the kinds that only a life of wear has."""
-    lines = []
-    for kind, (_, _, allowed, sources, of_laminates) in KINDS.items():
-        if not of_laminates and subject == ("a.h5" if "result" in sources else "life.h5"):
-            states = "--states 2,3" if "states" in allowed and kind != "sketch" else ""
-            lines.append(
-                f"plot {subject} {kind} -o {kind}.svg {states} {f'--csv {kind}.csv' if 'csv' in allowed else ''}"
-            )
-    return lines
-
-
-PARTS = {
-    "states": STATES.strip().splitlines(),
-    "study": STUDY.strip().splitlines(),
-    **{f"figures {k}": [RESULT, *plots("a.h5")[k::5]] for k in range(5)},
-    "crack": [RESULT, f"crack a.h5 {LAW} -o crack.svg --csv crack.csv"],
-    "page": [RESULT, "report a.h5 -o report.html"],
-    "life": [LIFE, *plots("life.h5")],
-    "page of a life": [LIFE, "report life.h5 -o report-life.html"],
-    "studies": STUDIES.strip().splitlines(),
-}
-"""Commands by part. Together they give every output."""
-
-
-def walk(found: Walk, part: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Run the commands of a part. Texts that are drawn are heard. Figures are outlined."""
-    monkeypatch.chdir(found.folder)
-    drawn: list[str] = []
-    draw = Text.draw
-    monkeypatch.setattr(
-        Text, "draw", lambda self, *given, **more: drawn.append(self.get_text()) or draw(self, *given, **more)
-    )
-    monkeypatch.setattr(figures.stress, "field_curves", functools.partial(figures.stress.field_curves, fineness=20))
-    monkeypatch.setattr(workers, "through_processes", run_here)
-    for line in PARTS[part]:
-        drawn.clear()
-        said = io.StringIO()
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            assert main(line.split()) == 0, said.getvalue()
-        found.commands[line] = "\n".join([said.getvalue(), *drawn])
-
-
 def test_every_command_is_walked() -> None:
     known = set(re.findall(r"^    (\w+)(?:  |$)", options.parser().format_help(), re.MULTILINE))
     assert {line.split()[0] for part in PARTS.values() for line in part} | WITHOUT_UNITS.keys() == known
@@ -210,10 +51,10 @@ def test_every_command_is_walked() -> None:
 @pytest.mark.gate
 @pytest.mark.parametrize("part", some_survey(PARTS, "page", "page of a life"))
 def test_every_output_is_with_the_thickness_or_per_metre(part: str, tmp_path: Path) -> None:
-    plain, thick = (Walk(tmp_path / name, name == "thick") for name in ("plain", "thick"))
+    plain, thick = (Walk(tmp_path / name, *words(name == "thick")) for name in ("plain", "thick"))
     for found in (plain, thick):
         with pytest.MonkeyPatch.context() as monkeypatch:
-            walk(found, part, monkeypatch)
+            walk(found, PARTS[part], monkeypatch)
     assert units_in(plain, IN_ALL) == {}
     assert units_in(thick, PER_METRE) == {}
     tables = plain.files(".csv"), thick.files(".csv")
@@ -236,17 +77,9 @@ def test_every_output_is_with_the_thickness_or_per_metre(part: str, tmp_path: Pa
 
 def units_in(found: Walk, wrong: re.Pattern[str]) -> dict[str, str]:
     """The first wrong unit of each output that has one."""
-    texts = found.commands | found.files(".csv") | found.files(".json") | found.files(".svg")
-    pages = found.files(".html").items()
-    texts |= {
-        name: re.sub(r"(?s)<style.*?</style>|<[^>]*>", " ", text)
-        for name, text in pages
-        if not name.startswith("record")
-    }
-    return {name: place[0] for name, text in texts.items() if (place := wrong.search(text))}
+    return {name: place[0] for name, text in found.texts().items() if (place := wrong.search(text))}
 
 
-UNIT = re.compile(r" \[(.*)\]$")
 PAIRS = {"N/m": "N", "N": "N m", "J/m": "J", "N/rad": "N m/rad", "m^2": "m^3", "N/m^2": "N per m"}
 """The unit with a thickness for each unit per thickness."""
 
@@ -270,14 +103,6 @@ def changed_tables(plain: dict[str, str], thick: dict[str, str]) -> set[str]:
             for row, other in zip(rows, others, strict=True):
                 assert is_times(row[column], other[column], factor), (name, title)
     return {name for name, factor in factors if factor == T}
-
-
-def is_times(plain: Any, thick: Any, factor: float) -> bool:
-    """Whether a cell or a number is `factor` times the other one; texts must be equal."""
-    try:
-        return math.isclose(float(thick), factor * float(plain), rel_tol=1e-8)
-    except (TypeError, ValueError):
-        return bool(plain == thick)
 
 
 def check_study(plain: str, thick: str) -> None:
@@ -307,15 +132,6 @@ TIMES = {
     "corners": (0, 1, 2), "2": ("P", "Q", "M"),
 }  # fmt: skip
 """Entries of the summaries that are times the thickness, by the entry in which they stand; "" for all others."""
-
-
-def leaves(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], Any]]:
-    """The numbers and texts of JSON with their places."""
-    if isinstance(value, dict | list):
-        for key, item in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from leaves(item, (*path, key))
-    else:
-        yield path, value
 
 
 def check_summary(*texts: str) -> None:

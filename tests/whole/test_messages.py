@@ -107,7 +107,7 @@ PLAN_ROOTS = [
         "[contact]\nfriction = [0.1]\n[grid]\ncontact.friction = [0.1]",
         "unknown section [contact]; it belongs in the case file, which a plan names",
     ),
-    ("[xyzzy]", "unknown section [xyzzy]; a plan has title, case, [grid], [[list]], [outcomes] and [labels]"),
+    ("[xyzzy]", "unknown section [xyzzy]; a plan has title, units, case, [grid], [[list]], [outcomes] and [labels]"),
     ("friction = [0.1]", 'unknown key "friction"; a plan varies it in [grid]: contact.friction = ...'),
     ("Q = [1e5]", 'unknown key "Q"; a plan varies it in [grid]: load.1.Q = ...'),
     ("[[grid]]\ncontact.friction = [0.1]", "grid: must be a section [grid], not [[grid]]"),

@@ -1,0 +1,156 @@
+"""Outputs of a case in a system of units are those of the same case in SI units, converted.
+
+The case is written anew with numbers that are read as the same ones, so all states have the same bits.
+"""
+
+import csv
+import itertools
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fastpin.model.unit_systems import SI
+from fastpin.model.units import measures_of
+from tests.support.unit_cases import CASES
+from tests.support.unit_walk import MOST_ROWS, PARTS, UNIT, Walk, case_in, leaves, line_in, walk, words
+
+SYSTEMS = ("in, lbf, ksi", "mm, N, MPa")
+
+IN_SI = {
+    "in, lbf, ksi": re.compile(r"(?<![\w/=])([GMkmunpµ]?(Pa|J|m)|[GMk]N|N m|N/m)(?![\w/*=^]| =|'|\")"),
+    "mm, N, MPa": re.compile(r"(?<![\w/])([Gkmunpµ]?Pa|[GMkunpµ]m|[GMkmunpµ]N|[GMkmunpµ]?J)(?![\w/*=^]| =)"),
+}
+"""Units that a system of units does not have. N and T name tractions, and m an exponent."""
+
+EXACT = {
+    "alpha", "beta", "nu", "friction", "corner", "corners", "cycles", "nodes", "seconds", "life", "step", "fraction",
+}  # fmt: skip
+
+
+def factors(system: str, whole: bool) -> dict[tuple[str, str], float]:
+    """The factor from each unit in SI to that of the system, by their names."""
+    old, new = measures_of(SI, whole), measures_of(system, whole)
+    return {(old[kind].name, new[kind].name): new[kind].per_si for kind in old}
+
+
+def pair(folder: Path, system: str, case: str, plan: str = "", thick: bool = True) -> tuple[Walk, Walk]:
+    force = measures_of(system, thick)["force"]
+    given = re.sub(r"(?<=load\.1\.P = \[)([\d.e]+), ([\d.e]+)", lambda each: ", ".join(
+        repr(force.given(float(number))) for number in each.groups()), plan)  # fmt: skip
+    return Walk(folder / "si", case, plan), Walk(folder / "system", case_in(case, system), given, system)
+
+
+def run_both(walks: tuple[Walk, Walk], lines: list[str]) -> None:
+    for found in walks:
+        with pytest.MonkeyPatch.context() as monkeypatch:
+            walk(found, [line_in(line, found.system) if found.system != SI else line for line in lines], monkeypatch)
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("system", SYSTEMS)
+@pytest.mark.parametrize("part", [part for part in PARTS if not part.startswith("page")])
+def test_every_output_is_in_the_units_of_the_case(part: str, system: str, tmp_path: Path) -> None:
+    case, plan = words(True)
+    walks = plain, given = pair(tmp_path, system, case, plan)
+    run_both(walks, PARTS[part])
+    check(plain, given, factors(system, True))
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize(("name", "system"), [*itertools.product(CASES, SYSTEMS)])
+def test_cases_of_all_kinds_agree_in_all_units(name: str, system: str, tmp_path: Path) -> None:
+    case, lines = CASES[name]
+    walks = plain, given = pair(tmp_path, system, case)
+    run_both(walks, lines)
+    check(plain, given, factors(system, "thickness" in case))
+
+
+def check(plain: Walk, given: Walk, by_name: dict[tuple[str, str], float]) -> None:
+    wrong = {name: place[0] for name, text in given.texts().items() if (place := IN_SI[given.system].search(text))}
+    assert not wrong
+    tables = plain.files(".csv"), given.files(".csv")
+    assert tables[0].keys() == tables[1].keys()
+    for name in tables[0]:
+        check_table(name, tables[0][name], tables[1][name], by_name)
+    documents = plain.files(".json"), given.files(".json")
+    for name in documents[0]:
+        check_document(json.loads(documents[0][name]), json.loads(documents[1][name]), by_name)
+    for line, text in plain.commands.items():
+        check_text(text, given.commands[line_in(line, given.system)], by_name)
+
+
+def check_table(name: str, text: str, other: str, by_name: dict[tuple[str, str], float]) -> None:
+    """Check a table whose units stand in its header, in a comment line, or in a column."""
+    lines, others = (each.splitlines()[: MOST_ROWS + 3] for each in (text, other))
+    units: list[dict[str, str]] = [{}, {}]
+    for k, each in enumerate((lines, others)):
+        while each[0].startswith("#"):
+            words = each.pop(0).removeprefix("# units: ")
+            units[k] |= dict(part.rsplit(" ", 1) for part in re.split(r", (?=\w[\w.]* )", words) if " " in part)
+    (head, *rows), (other_head, *other_rows) = csv.reader(lines), csv.reader(others)
+    assert len(rows) == len(other_rows)
+    for place, (title, other_title) in enumerate(zip(head, other_head, strict=True)):
+        assert UNIT.sub("", title) == UNIT.sub("", other_title)
+        named = [found[1] if (found := UNIT.search(each)) else "" for each in (title, other_title)]
+        if units[0]:
+            named = [each.get(title, "") for each in units]
+        for row, other_row in zip(rows, other_rows, strict=True):
+            if "unit" in head and title in ("value", "limit", "bar", "path"):
+                named = [row[head.index("unit")], other_row[head.index("unit")]]
+            factor = 1.0 if named[0] == named[1] else by_name[named[0], named[1]]
+            assert title == "seconds" or is_close(row[place], other_row[place], factor, 1e-8), (name, title)
+
+
+def is_close(value: Any, other: Any, factor: float, tolerance: float) -> bool:
+    try:
+        value, other = float(value), float(other)
+    except (TypeError, ValueError):
+        return True  # words may name units
+    return abs(other - factor * value) <= tolerance * abs(other) or (value != value and other != other)
+
+
+def check_document(plain: Any, given: Any, by_name: dict[tuple[str, str], float]) -> None:
+    """Check that each number is the same or converted, and that all numbers of one key are alike."""
+    known: dict[str, set[float]] = {}
+    for (path, value), (other_path, other) in zip(leaves(plain), leaves(given), strict=True):
+        assert path == other_path
+        if not isinstance(value, (int, float)) or isinstance(value, bool) or value == 0.0 or "statistics" in path:
+            continue
+        if path[-1].endswith("angle") if isinstance(path[-1], str) else False:
+            assert other == pytest.approx(value, rel=1e-11, abs=1e-9)
+            continue
+        ratio = next((f for f in (1.0, *by_name.values()) if is_close(value, other, f, 1e-11)), None)
+        assert ratio is not None or path[-1] == "seconds", (path, value, other)
+        if ratio is not None:
+            known.setdefault(".".join(part for part in path if isinstance(part, str)), set()).add(ratio)
+    same = {name for name, ratios in known.items() if 1.0 in ratios}
+    works = {"energy", "dissipation", "work"} if by_name.get(("J/m", "N mm/mm")) == 1.0 else set()
+    wrong = {name for name in same if DIMENSIONAL.search(name) and name.rpartition(".")[2] not in works}
+    assert not wrong
+
+
+DIMENSIONAL = re.compile(
+    r"(pressure|stress|energy|dissipation|work|radius|clearance|depth|\bE|strength|beta_star|slip_range|slip_distance|traction|force)$"
+)
+"""Ends of the names of numbers that must not be the same in all units."""
+
+NUMBER_WITH_UNIT = re.compile(
+    r"(?<![\w.])([+-]?\d[\d,]*\.?\d*(?:e[+-]?\d+)?) ([A-Za-zµ1][\w/^]*(?: sqrt\(\w+\)| in\b| mm\b)?)"
+)
+
+
+def check_text(text: str, other: str, by_name: dict[tuple[str, str], float]) -> None:
+    """Check the numbers of sentences that have a unit behind them."""
+    ends = {old: (new, factor) for (old, new), factor in by_name.items()}
+    pairs = zip(NUMBER_WITH_UNIT.finditer(text), NUMBER_WITH_UNIT.finditer(other), strict=False)
+    for one, two in pairs:
+        stem = next((name for name in (one[2], one[2][1:]) if name in ends), "")
+        if not stem or stem == one[2] == two[2]:
+            continue
+        power = {"G": 9, "M": 6, "k": 3, "m": -3, "u": -6, "µ": -6, "n": -9, "p": -12}.get(one[2].removesuffix(stem), 0)
+        value, changed = (float(each[1].replace(",", "")) for each in (one, two))
+        if two[2] == ends[stem][0]:
+            assert is_close(value * 10.0**power, changed, ends[stem][1], 2e-2), (one[0], two[0])
