@@ -67,7 +67,7 @@ def cycle_line(cycle: LoadCycle) -> str:
     The places of the largest values stand beside them. Values that are rounding beside the sizes of
     :func:`natural_sizes` are 0.
     """
-    natural, found = natural_sizes(cycle), document(cycle)
+    natural, found = natural_sizes(cycle), document_of(CYCLE, cycle, {})  # in SI units
     unit = units(cycle.states[0].problem)
 
     def words(name: str, kind: str) -> str:

@@ -46,7 +46,7 @@ limit_range = 150e6
 
 CURVE = """
 [plate.fatigue]
-curve_a = 20.83
+curve_a = 88.12
 curve_b = 9.84
 curve_c = 0.0
 curve_m = 0.45
