@@ -115,10 +115,10 @@ def write_csv(cycle: LoadCycle, path: Path) -> None:
         If the file can't be written.
     """
     unit, cells, header = units(cycle.states[0].problem), dict[str, list[Any]](), []
-    for name, (values, _) in cycle.columns().items():
+    for name, (column, _) in cycle.columns().items():
         of_name = unit.get(NODE_KINDS[name], PLAIN)
         header.append(f"{name} [{of_name.name}]" if of_name.name else name)
-        cells[name] = (of_name.factor * values).tolist()
+        cells[name] = (of_name.factor * column).tolist()
     del cells["theta"], header[0]
     cells["behaviour"] = [WORDS[NodeBehaviour(value)] for value in cells["behaviour"]]
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:

@@ -208,7 +208,7 @@ class CaseText:
         self.report(f"unknown section {section}{hint}" if section else f'unknown key "{name}"{where}{hint}', name)
 
     def check_sections(self, keys: Mapping[str, Collection[str]], blocks: Collection[str]) -> None:
-        """Report unknown sections and keys of a file with a title.
+        """Report unknown sections and keys of a file with a title and units.
 
         Parameters
         ----------
@@ -220,7 +220,7 @@ class CaseText:
         shown = {name: f"[[{name}]]" if name in blocks else f"[{name}]" for name in keys}
         for name, value in self.root.table.items():
             are_tables = name in blocks and isinstance(value, list) and all(isinstance(each, dict) for each in value)
-            if name == "title":
+            if name in ("title", "units"):
                 continue
             if name not in keys:
                 self.report_unknown(

@@ -47,7 +47,9 @@ def run(options: argparse.Namespace) -> int:
             (options.shares, lambda path: figures.plot_shares(result, path, case.title)),
         ],
         options.json,
-        lambda: outputs.whole_document(report.joints.JOINT, result, {}, title=case.title),
+        lambda: outputs.whole_document(
+            report.joints.JOINT, result, report.joints.joint_units(result.joint), title=case.title
+        ),
         lambda: [*filter(None, [case.title]), *report.joints.describe(result).split("\n")],
     )
     return code or written

@@ -12,10 +12,12 @@ from matplotlib.lines import Line2D
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import COLOURS, MAX_NAMED, draw_grid, line, quantity
-from fastpin.joints import JointResult, JointState
+from fastpin.joints import Joint, JointResult, JointState
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.checks import instance, whole_number
-from fastpin.model.units import scaled
+from fastpin.model.unit_systems import SI
+from fastpin.model.units import Unit
+from fastpin.report.joints import joint_units
 
 RING = 1.35
 """Outer radius of the ring that shows the hoop stress, in hole radii."""
@@ -78,29 +80,31 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
     sheet = look.sheet([min(height, 6.0)] * len(joint.plates), extra=1.3, sharex=True)
     theta = np.linspace(-np.pi, np.pi, AROUND)
     hoops = [contact.hoop_stress("plate", theta) for contact in state.contacts]
-    factor, unit = scaled([float(np.abs(hoop).max()) for hoop in hoops], "Pa")
+    of_joint, size = joint_units(joint), _length(joint)
+    factor, unit = of_joint["traction"].scale([float(np.abs(hoop).max()) for hoop in hoops])
     largest = factor * max(float(np.abs(hoop).max()) for hoop in hoops) or 1.0
     norm = TwoSlopeNorm(0.0, -largest, largest)
     longest = max(float(np.hypot(*state.forces.T).max()), 1e-300)
     for place, (plate, panel) in enumerate(zip(joint.plates, sheet.axes[:, 0], strict=True)):
         for part in plate.outline:
-            z = 1e3 * part.at(np.linspace(0.0, 1.0, 61))
+            z = size.factor * part.at(np.linspace(0.0, 1.0, 61))
             held = part.name in plate.supports
             panel.plot(z.real, z.imag, color="0.2", linewidth=3.0 if held else 1.2, snap=False)
         for hole in plate.holes:
-            z = 1e3 * (hole.centre + hole.radius * np.exp(1j * theta))
+            z = size.factor * (hole.centre + hole.radius * np.exp(1j * theta))
             panel.plot(z.real, z.imag, color="0.2", linewidth=1.2)
         for k, (pin, of) in enumerate(joint.sections):
             if of is plate:
-                _draw_hole(panel, state, k, 1e3 * pin.at, theta, factor * hoops[k], norm, longest)
+                _draw_hole(panel, state, k, size.factor * pin.at, theta, factor * hoops[k], norm, longest)
         panel.set_aspect("equal")
-        panel.set_xlim(1e3 * left, 1e3 * right)
-        panel.set_ylim(1e3 * bottom, 1e3 * top)
-        panel.set_ylabel(quantity("y", "mm"))
+        panel.set_xlim(size.factor * left, size.factor * right)
+        panel.set_ylim(size.factor * bottom, size.factor * top)
+        panel.set_ylabel(quantity("y", size.name))
         moved = state.moved[place]
-        words = f", moved by {1e3 * moved[0]:.3g}, {1e3 * moved[1]:.3g} mm" if plate.moves else ""
+        by = ", ".join(f"{size.factor * each:.3g}" for each in moved[:2])
+        words = f", moved by {by} {size.name}" if plate.moves else ""
         panel.set_title(f"{plate.name}{words}", fontsize=8.5, loc="left", parse_math=False)
-    sheet.axes[-1, 0].set_xlabel(quantity("x", "mm"))
+    sheet.axes[-1, 0].set_xlabel(quantity("x", size.name))
     mappable = sheet.axes[0, 0].collections[0]
     sheet.figure.colorbar(
         mappable, ax=list(sheet.axes[:, 0]), label=quantity("hoop stress", unit), shrink=0.8, pad=0.02
@@ -110,7 +114,13 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
         Line2D([], [], color="black", label="sticks", **style),
         Line2D([], [], color=COLOURS[1], label="slips", **style),
     ]
-    sheet.legend([*entries, Line2D([], [], color="black", marker=">", label=f"largest force {_newton(longest)}")], 3)
+    sheet.legend(
+        [
+            *entries,
+            Line2D([], [], color="black", marker=">", label=f"largest force {of_joint['force'].text(longest, 3)}"),
+        ],
+        3,
+    )
     sheet.head(look.title)
     return sheet
 
@@ -127,7 +137,7 @@ def _draw_hole(
 ) -> None:
     """Draw one hole: the ring of the hoop stress, the zones of contact, the force and the name of its pin."""
     contact, (pin, _) = state.contacts[place], state.joint.sections[place]
-    radius = 1e3 * pin.radius
+    radius = _length(state.joint).factor * pin.radius
     ring = centre + radius * np.multiply.outer([1.0, RING], np.exp(1j * theta))
     panel.pcolormesh(
         ring.real, ring.imag, np.vstack([hoop, hoop]), cmap="RdBu_r", norm=norm, shading="gouraud", rasterized=True
@@ -150,9 +160,9 @@ def _draw_hole(
     )
 
 
-def _newton(force: float) -> str:
-    factor, unit = scaled([force], "N")
-    return f"{factor * force:.3g} {unit}"
+def _length(joint: Joint) -> Unit:
+    """The unit of lengths along the axes; mm in SI units."""
+    return Unit(1e3, "mm") if joint.unit_system == SI else joint_units(joint)["length"]
 
 
 def _draw_shares(look: Look, result: JointResult) -> Sheet:
@@ -163,7 +173,7 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
         pin.name: [float(np.hypot(*state.forces[joint.place(pin.name, pin.plates[0])])) for state in result]
         for pin in joint.pins
     }
-    factor, unit = scaled([max(values) for values in forces.values()], "N")
+    factor, unit = joint_units(joint)["force"].scale([max(values) for values in forces.values()])
     few = len(points) <= 60
     for k, (_, values) in enumerate(forces.items()):
         panel.plot(

@@ -29,6 +29,7 @@ from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
 from fastpin.model.read_only import ReadOnlyDict
+from fastpin.model.unit_systems import SI, checked_system
 
 MOST_PINS, MOST_PLATES = 40, 20
 """Most pins and plates of a joint."""
@@ -229,6 +230,8 @@ class Joint:
     plates : sequence of JointPlate
     pins : sequence of JointPin
     plane : {"stress", "strain"}
+    unit_system : str
+        Units of printed texts and figures, see :class:`fastpin.Problem`. Forces are those of whole plates.
 
     Raises
     ------
@@ -239,8 +242,10 @@ class Joint:
     plates: tuple[JointPlate, ...]
     pins: tuple[JointPin, ...]
     plane: Plane = "stress"
+    unit_system: str = SI
 
     def __post_init__(self) -> None:
+        check_fields(self, checked_system, "unit_system")
         set_fields(self, plates=tuple(instances("plates", self.plates, JointPlate, "a list of plates")))
         set_fields(self, pins=tuple(instances("pins", self.pins, JointPin, "a list of pins")))
         check_fields(self, choice, "plane", PLANES)
@@ -320,7 +325,7 @@ class Joint:
         try:
             return Problem(
                 pair, pin.radius, pin.value_in("clearance", plate.name), pin.value_in("friction", plate.name),
-                pin_load="body", thickness=plate.thickness,
+                pin_load="body", thickness=plate.thickness, unit_system=self.unit_system,
             )  # fmt: skip
         except InputError as error:
             raise InputError(error.field, f"pin {pin.name} in {plate.name}: {error.reason}") from None

@@ -14,10 +14,11 @@ from fastpin.casefile.lug import limits_of, point_of
 from fastpin.casefile.materials import read_material
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
 from fastpin.errors import InputError
-from fastpin.joints.parts import Joint, JointPin, JointPlate, tate_rosenfeld
+from fastpin.joints.parts import REMOTE_NAMES, Joint, JointPin, JointPlate, tate_rosenfeld
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
 from fastpin.lugs.outline import Part, rectangle
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
+from fastpin.model.keys import ANY, JOINT
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
 
 JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8")
@@ -79,6 +80,7 @@ def parse_joint(text: str, name: str = "joint file") -> JointFile:
 
 
 def _joint_file(source: CaseText) -> JointFile | None:
+    source.to_si(JOINT | {"load": {ANY: "force", **dict.fromkeys(_stresses(source), "traction")}}, True)
     source.check_sections(_KEYS, ("plate", "pin", "load"))
     title, settings = source.root.checked("title", string) or "", source.section("joint")
     plane = settings.choice("plane", ("stress", *(word for word in PLANES if word != "stress")))
@@ -91,7 +93,7 @@ def _joint_file(source: CaseText) -> JointFile | None:
     if source.faults or plane is None or None in plates or None in pins:
         return None
     try:
-        joint = Joint(tuple(plates), tuple(pins), plane)  # type: ignore[arg-type]
+        joint = Joint(tuple(plates), tuple(pins), plane, source.units)  # type: ignore[arg-type]
     except InputError as error:
         source.report(str(error), "pin")
         return None
@@ -106,6 +108,12 @@ def _joint_file(source: CaseText) -> JointFile | None:
         return None
     load_values(joint, corners)
     return JointFile(joint, corners * times, title, nodes, harmonics)
+
+
+def _stresses(source: CaseText) -> list[str]:
+    """The loads that are stresses."""
+    names = [name for block in source.blocks("load") for name in block.table]
+    return [name for name in names if name.rpartition(".")[2] in REMOTE_NAMES]
 
 
 def _required(source: CaseText, name: str) -> list[Section]:

@@ -93,9 +93,8 @@ JOINT: dict[str, Any] = {
     "pin": MATERIAL
     | _of("length", "at", "diameter")
     | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility"},
-    "load": {ANY: "force"},
 }
-"""The kinds of a joint file. Loads whose names end in the name of a stress are stresses."""
+"""The kinds of a joint file, apart from its loads."""
 
 
 def kind_of(field: str) -> str:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from fastpin.assess import outputs
 from fastpin.assess.outputs import NUMBER, TEXT, WHOLE, Column, Output, list_of, map_of, table
-from fastpin.joints import JointPin, JointPlate, JointResult, JointState
+from fastpin.joints import Joint, JointPin, JointPlate, JointResult, JointState
 from fastpin.model import angles, ties
-from fastpin.model.units import scaled
+from fastpin.model.units import Unit, units_of
 from fastpin.states.state import State
 
 UNRESOLVED = " (not resolved)"
@@ -36,21 +37,22 @@ def describe(result: JointResult) -> str:
 def forces_table(result: JointResult) -> str:
     """Return the loads, the displacements of plates that move, and the force of each pin on its first plate."""
     joint, states = result.joint, result.states
+    unit = joint_units(joint)
     columns: list[Column] = [("load point", "", [str(state.step + 1) for state in states])]
     for name in joint.load_names:
         values = [state.load[name] for state in states]
         if any(values):
-            columns.append(_column(name, values, "Pa" if joint.is_stress(name) else "N"))
+            columns.append(_column(name, values, unit["traction" if joint.is_stress(name) else "force"]))
     for place, plate in enumerate(joint.plates):
         for k, axis in enumerate("xy"):
             values = [float(state.moved[place, k]) for state in states]
             if axis not in plate.moves and not plate.floats:
                 continue
-            columns.append(_column(f"u {plate.name}.{axis}", values, "m"))
+            columns.append(_column(f"u {plate.name}.{axis}", values, unit["displacement"]))
     for pin in joint.pins:
         place = joint.place(pin.name, pin.plates[0])
         values = [float(np.hypot(*state.forces[place])) for state in states]
-        columns.append(_column(f"{pin.name} on {pin.plates[0]}", values, "N"))
+        columns.append(_column(f"{pin.name} on {pin.plates[0]}", values, unit["force"]))
         shares = [state.shares(pin.plates[0])[pin.name] for state in states]
         if not all(math.isnan(share) for share in shares):
             columns.append(("share", "%", ["-" if math.isnan(share) else f"{100 * share:.3g}" for share in shares]))
@@ -63,15 +65,16 @@ def largest_table(result: JointResult) -> str:
     names = [(pin.name, plate.name) for pin, plate in result.joint.sections]
     columns: list[Column] = [("pin", "", [pin for pin, _ in names]), ("plate", "", [plate for _, plate in names])]
     columns.append(("first contact", "", ["never" if row["touched"] is None else str(row["touched"]) for row in rows]))
-    for key, name, unit in (("force", "largest force", "N"), ("pressure", "largest p", "Pa")):
-        columns.append(_column(name, [row[key] for row in rows], unit))
-    factor, label = scaled([row["hoop"] for row in rows], "Pa")
+    unit = joint_units(result.joint)
+    for key, name, kind in (("force", "largest force", "force"), ("pressure", "largest p", "traction")):
+        columns.append(_column(name, [row[key] for row in rows], unit[kind]))
+    factor, label = unit["traction"].scale([row["hoop"] for row in rows])
     words = [f"{factor * row['hoop']:.5g}{'' if row['resolved'] else UNRESOLVED}" for row in rows]
     columns.append(("largest hoop", label, words))
     columns.append(("at", "deg", [f"{angles.from_bottom(row['hoop_angle']):z.1f}" for row in rows]))
     columns.append(("load point", "", [str(row["hoop_step"]) for row in rows]))
-    columns.append(_column("slip", [row["slip"] for row in rows], "m"))
-    columns.append(_column("dissipated", [row["dissipation"] for row in rows], "J"))
+    columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
+    columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
     return table(columns)
 
 
@@ -106,8 +109,13 @@ def _pressure(contact: State) -> float:
     return float(contact.peak_pressure) if contact.in_contact else 0.0
 
 
-def _column(name: str, values: list[float], unit: str) -> Column:
-    factor, label = scaled(values, unit)
+def joint_units(joint: Joint) -> Mapping[str, Unit]:
+    """Return the unit of every kind of quantity in the printed texts of a joint; values are of whole plates."""
+    return units_of(joint.unit_system, True)
+
+
+def _column(name: str, values: list[float], unit: Unit) -> Column:
+    factor, label = unit.scale(values)
     largest = max(map(abs, values), default=0.0)
     return name, label, [f"{factor * value:.5g}" if abs(value) > 1e-9 * largest else "0" for value in values]
 
@@ -134,19 +142,46 @@ class JointContact(NamedTuple):
         return self.state.contacts[self.place]
 
 
+def _loads(state: JointState) -> dict[str, float]:
+    """Loads in printed units."""
+    unit, joint = joint_units(state.joint), state.joint
+    return {
+        name: unit["traction" if joint.is_stress(name) else "force"].factor * value
+        for name, value in state.load.items()
+    }
+
+
+def _moved(state: JointState) -> dict[str, list[float]]:
+    """Displacement in printed units and rotation of each plate."""
+    factor = joint_units(state.joint)["displacement"].factor
+    return {
+        plate.name: (by * [factor, factor, 1.0]).tolist()
+        for plate, by in zip(state.joint.plates, state.moved, strict=True)
+    }
+
+
+KINDS = {
+    "force": "force", "moment": "moment", "stress": "traction", "length": "displacement", "energy": "energy",
+    "angle": "rotation",
+}  # fmt: skip
+"""The kinds of quantity whose units JSON names, by their names there."""
+
 CONTACT = (
     Output("pin", "text", lambda at: at.pin.name),
     Output("plate", "text", lambda at: at.plate.name),
-    Output("force", of=lambda at: at.state.forces[at.place], form=list_of(NUMBER, 2)),
-    Output("moment", of=lambda at: at.state.moments[at.place]),
+    Output(
+        "force", form=list_of(NUMBER, 2),
+        of=lambda at: joint_units(at.state.joint)["force"].factor * at.state.forces[at.place],
+    ),
+    Output("moment", "moment", lambda at: at.state.moments[at.place]),
     Output("share", of=lambda at: at.state.shares(at.plate.name)[at.pin.name], optional=True),
-    Output("peak_pressure", of=lambda at: _pressure(at.contact)),
+    Output("peak_pressure", "traction", lambda at: _pressure(at.contact)),
     Output(
         "peak_hoop_stress", of=lambda at: at.contact.peak_hoop_stress("plate"),
-        parts=(*outputs.numbers("value angle"), Output("resolved", "truth")),
+        parts=(Output("value", "traction"), Output("angle"), Output("resolved", "truth")),
     ),
-    Output("dissipation", of=lambda at: at.contact.dissipation * at.plate.thickness),
-    Output("slip", of=lambda at: np.max(at.contact.slip_distance)),
+    Output("dissipation", "energy", lambda at: at.contact.dissipation * at.plate.thickness),
+    Output("slip", "displacement", lambda at: np.max(at.contact.slip_distance)),
 )  # fmt: skip
 """Outputs of a :class:`JointContact`."""
 
@@ -154,21 +189,21 @@ LARGEST = (
     Output("pin", "text"),
     Output("plate", "text"),
     Output("touched", "whole", optional=True),
-    *outputs.numbers("force pressure hoop hoop_angle"),
+    Output("force", "force"),
+    *outputs.numbers("pressure hoop", "traction"),
+    Output("hoop_angle"),
     Output("hoop_step", "whole"),
     Output("resolved", "truth"),
-    *outputs.numbers("slip dissipation"),
+    Output("slip", "displacement"),
+    Output("dissipation", "energy"),
 )
 """Outputs of a :func:`contact_row`."""
 
 JOINT_STATE = (
     Output("load_point", "whole", lambda state: state.step + 1),
-    Output("loads", of=lambda state: state.load, form=map_of(NUMBER, "forces, N, and stresses, Pa")),
+    Output("loads", of=_loads, form=map_of(NUMBER, "forces and stresses")),
     Output(
-        "moved", form=map_of(list_of(NUMBER, 3), "displacement along x, y, m, and rotation, rad"),
-        of=lambda state: {
-            plate.name: by.tolist() for plate, by in zip(state.joint.plates, state.moved, strict=True)
-        },
+        "moved", form=map_of(list_of(NUMBER, 3), "displacement along x and y, and rotation"), of=_moved,
     ),
     Output(
         "contacts", "list", lambda state: [JointContact(state, place) for place in range(len(state.contacts))],
@@ -181,7 +216,7 @@ JOINT_STATE = (
 JOINT = (
     Output(
         "units", form=map_of(TEXT, "unit of each kind of quantity"),
-        of=lambda result: {"force": "N", "stress": "Pa", "length": "m", "energy": "J", "angle": "rad"},
+        of=lambda result: {name: joint_units(result.joint)[kind].name for name, kind in KINDS.items()},
     ),
     Output("nodes", "whole"),
     Output(
@@ -199,4 +234,4 @@ JOINT = (
     ),
     Output("states", "list", parts=JOINT_STATE),
 )  # fmt: skip
-"""Outputs of the result of a joint, SI."""
+"""Outputs of the result of a joint."""

@@ -140,9 +140,9 @@ report limits -o limits.html
 def plots(subject: str) -> list[str]:
     """The commands that draw every kind of figure of a result, or the kinds that only a life of wear has."""
     lines = []
-    for kind, (_, _, allowed, ending, sources, of_laminates) in KINDS.items():
+    for kind, (_, _, allowed, sources, of_laminates) in KINDS.items():
         if not of_laminates and subject == ("a.h5" if "result" in sources else "life.h5"):
-            name = f"{kind}.{'gif' if ending == 'gif' else 'svg'}"
+            name = f"{kind}.svg"
             states = "--states 2,3" if "states" in allowed and kind != "sketch" else ""
             lines.append(f"plot {subject} {kind} -o {name} {states} {f'--csv {kind}.csv' if 'csv' in allowed else ''}")
     return lines
@@ -162,7 +162,7 @@ PARTS = {
 
 
 def walk(found: Walk, lines: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Run commands. Pictures of an animation are drawn: their texts are heard. Others are outlined."""
+    """Run commands. Texts that are drawn are heard. Figures are outlined."""
     monkeypatch.chdir(found.folder)
     drawn: list[str] = []
     draw = Text.draw
