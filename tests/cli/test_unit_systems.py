@@ -21,7 +21,13 @@ from tests.support.unit_walk import MOST_ROWS, PARTS, UNIT, Walk, case_in, leave
 
 SYSTEMS = ("in, lbf, ksi", "mm, N, MPa")
 
+WALKED = "cm, kN, GPa"
+"""A system of powers of ten: the states are the same ones to the last bit."""
+
 IN_SI = {
+    WALKED: re.compile(
+        r"(?<![\w/=])(?<!curve )([Mkmunpµ]?Pa|[GMkmunpµ]?m|[GMmunpµ]N|[GMkmunpµ]?J)(?![\w/*=^]| =|'|\")"
+    ),
     "in, lbf, ksi": re.compile(r"(?<![\w/=])(?<!curve )([GMkmunpµ]?(Pa|J|m)|[GMk]N|N m|N/m)(?![\w/*=^]| =|'|\")"),
     "mm, N, MPa": re.compile(r"(?<![\w/])([Gkmunpµ]?Pa|[GMkunpµ]m|[GMkmunpµ]N|[GMkmunpµ]?J)(?![\w/*=^]| =)"),
 }
@@ -50,7 +56,7 @@ def run_both(walks: tuple[Walk, Walk], lines: list[str]) -> None:
 @pytest.mark.gate
 @pytest.mark.parametrize("part", some_survey(PARTS, "page", "page of a life"))
 def test_every_output_is_in_the_units_of_the_case(part: str, tmp_path: Path) -> None:
-    (case, plan), system = words(True), SYSTEMS[0]
+    (case, plan), system = words(True), WALKED
     walks = plain, given = pair(tmp_path, system, case, plan)
     run_both(walks, [line for line in PARTS[part] if line != "compliance --example"])  # a lug file in SI units
     check(plain, given, factors(system, True))
@@ -86,7 +92,7 @@ def check_table(name: str, text: str, other: str, by_name: dict[tuple[str, str],
     for k, each in enumerate((lines, others)):
         while each[0].startswith("#"):
             words = each.pop(0).removeprefix("# units: ")
-            units[k] |= dict(part.rsplit(" ", 1) for part in re.split(r", (?=\w[\w.]* )", words) if " " in part)
+            units[k] |= dict(part.split(" ", 1) for part in re.split(r", (?=\w[\w.]* )", words) if " " in part)
     (head, *rows), (other_head, *other_rows) = csv.reader(lines), csv.reader(others)
     assert len(rows) == len(other_rows)
     for place, (title, other_title) in enumerate(zip(head, other_head, strict=True)):
