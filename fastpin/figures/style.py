@@ -223,12 +223,14 @@ def load_text(states: Sequence[State], index: int, name: str) -> str:
         for other in loads.LOADS
         if loads.LOAD_KIND[other] == loads.LOAD_KIND[name]
     ]
-    factor, unit = units(states[0].problem)[loads.LOAD_KIND[name]].scale(same_kind)
+    of_kind = units(states[0].problem)[loads.LOAD_KIND[name]]
+    factor, unit = of_kind.scale(same_kind)
     load = states[index].load[name]
     if abs(load) <= ROUNDING * max(map(abs, same_kind)):
         return f"{name} = 0"
-    value = f"{load * factor:+.4g}".replace("-", "−")
-    return f"{name} = {value.lstrip('+') if name == 'P' else value} {shown_unit(unit)}"
+    sign = "+" if load > 0.0 and name != "P" else ""
+    value = f"{sign}{of_kind.number(load * factor, 4)}".replace("-", "−")
+    return f"{name} = {value} {shown_unit(unit)}"
 
 
 def loads_by_change(states: Sequence[State]) -> tuple[list[str], list[str]]:
@@ -306,8 +308,9 @@ def range_text(problem: Problem, name: str, span: tuple[float, float]) -> str:
     """A load, or the range of its values, with its unit."""
     if span[0] == span[1]:
         return f"{name} = {short_load(problem, name, span[0])}"
-    factor, unit = units(problem)[loads.LOAD_KIND[name]].scale(span)
-    low, high = (f"{factor * value:.{DIGITS}g}".replace("-", "−") for value in span)
+    of_kind = units(problem)[loads.LOAD_KIND[name]]
+    factor, unit = of_kind.scale(span)
+    low, high = (of_kind.number(factor * value, DIGITS).replace("-", "−") for value in span)
     return f"{name}: {low} to {high}\N{NO-BREAK SPACE}{shown_unit(unit)}"
 
 

@@ -126,7 +126,12 @@ class Unit:
     def text(self, value: float, digits: int = 6) -> str:
         """A value in Python as text in this unit with an SI prefix, to so many significant `digits`."""
         factor, label = self.scale([value])
-        return f"{value * factor:.{digits}g} {label}"
+        return f"{self.number(value * factor, digits)} {label}"
+
+    def number(self, value: float, digits: int) -> str:
+        """A value in this unit to so many significant `digits`; in a unit that is chosen, 25000 has no exponent."""
+        text = f"{value:.{digits}g}"
+        return f"{float(text):.0f}" if self.is_chosen and "e+" in text and abs(value) < 1e7 else text
 
 
 PLAIN = Unit(1.0, "")
