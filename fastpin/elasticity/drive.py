@@ -68,7 +68,7 @@ class Drive:
 
     def force(self, motion: np.ndarray, load: np.ndarray) -> np.ndarray:
         """Force on the pin along x and y, shape (2,): reactions from the unknown `motion` (m,), others from `load`."""
-        return np.where(self.axes, motion[:2], load[list(FORCES)] * SIGNS)
+        return np.array([load[Q], -load[P]])
 
     def position(self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest: np.ndarray) -> np.ndarray:
         """Displacement c of the pin's rim relative to the hole, from the concentric position, shape (2,).
@@ -131,6 +131,9 @@ class DisplacementDrive(Drive):
     def part(self, rows: np.ndarray) -> Drive:
         nodal = {name: getattr(self, name)[rows] for name in ("translation", "columns", "offsets")}
         return replace(self, coupling=self.coupling[:, rows], **nodal)
+
+    def force(self, motion: np.ndarray, load: np.ndarray) -> np.ndarray:
+        return np.where(self.axes, motion[:2], super().force(motion, load))
 
     def position(self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest: np.ndarray) -> np.ndarray:
         driven = load[list(DISPLACEMENTS)] - self.compliance * motion[:2] + self.coupling @ tractions

@@ -236,6 +236,16 @@ class System:
         return self.radius * self.weights
 
     @cached_property
+    def both_weights(self) -> np.ndarray:
+        """The weights of the pressures and then of the shears, shape (2n,)."""
+        return np.concatenate([self.weights, self.weights])
+
+    @cached_property
+    def stops(self) -> np.ndarray:
+        """The place after the last node of each interface, int, shape (interfaces,)."""
+        return np.array([rim.nodes.stop for rim in self.interfaces])
+
+    @cached_property
     def resultants(self) -> np.ndarray:
         """Maps (N, T) to the forces along x and y and the moment that each interface passes on, (3 interfaces, 2n)."""
         n, found = self.grid.size, np.zeros((3 * len(self.interfaces), 2 * self.grid.size))
@@ -245,6 +255,11 @@ class System:
             rows[:2, normal], rows[:2, shear] = (cos, sin), (sin, -cos)
             rows[2, shear] = -(rim.radius**2) * rim.grid.weights
         return found
+
+    @cached_property
+    def resultant_sizes(self) -> np.ndarray:
+        """The absolute values of :attr:`resultants`: they give the resultants of the absolute tractions."""
+        return np.abs(self.resultants)
 
     @cached_property
     def ends(self) -> np.ndarray:

@@ -22,6 +22,10 @@ BITS = {(1, -1): 1, (1, 1): 2, (1, 0): 4, (-1, -1): 8, (-1, 1): 16, (-1, 0): 32}
 """Bit of a border by two signs: the direction into the zone, and the shear in the slip zone beyond; 0 for an edge."""
 
 
+UPWARD = sum(bit for (inwards, _), bit in BITS.items() if inwards > 0)
+"""Bits of the borders whose zone lies on the side of the next nodes."""
+
+
 class OldBorder(NamedTuple):
     """A border in a zone.
 
@@ -64,7 +68,7 @@ def old_borders(marks: np.ndarray, places: np.ndarray) -> list[OldBorder]:
 
 def is_ambiguous(mark: int) -> bool:
     """Whether a node with this mark ends zones in both directions, so that it has no single place."""
-    return len({inwards for (inwards, _), bit in BITS.items() if mark & bit}) == 2
+    return bool(mark & UPWARD and mark & ~UPWARD)
 
 
 def present_borders(status: np.ndarray, closed: bool) -> list[tuple[int, int, int]]:
@@ -81,13 +85,13 @@ def present_borders(status: np.ndarray, closed: bool) -> list[tuple[int, int, in
     list of (int, int, int)
         Outermost node, direction into the zone, and sign of the shear in the slip zone; 0 for an edge.
     """
-    changes = [(node, node + 1) for node in np.flatnonzero(status[1:] != status[:-1]).tolist()]
+    changes = [(node, node + 1) for node in (status[1:] != status[:-1]).nonzero()[0].tolist()]
     if closed:
         changes.append((status.size - 1, 0))
     found = []
     for before, after in changes:
-        for node, beside, inwards in ((after, int(status[before]), 1), (before, int(status[after]), -1)):
-            own = int(status[node])
+        first, second = status.item(before), status.item(after)
+        for node, own, beside, inwards in ((after, second, first, 1), (before, first, second, -1)):
             if own != OPEN and beside == OPEN:
                 found.append((node, inwards, 0))
             elif own == STICK and beside != STICK:

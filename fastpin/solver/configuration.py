@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,9 +28,6 @@ NODAL = ("pressure", "shear", "gap", "slip", "status", "rest_gap", "rest_slip")
 
 MARKS = ("marks", "seat_marks")
 """Fields of a configuration with the marks of each interface."""
-
-AT_REST = ("origin", "rest", "rest_gap", "rest_slip")
-"""Arrays that nothing changes in place: copies of a configuration share them."""
 
 
 @dataclass(eq=False)
@@ -85,23 +82,25 @@ class Configuration:
     seat_dissipation: float = 0.0
     seat_marks: Marks = field(default_factory=Marks)
 
-    def copy(self) -> Configuration:
-        """A copy that shares no array with this one, except those of :data:`AT_REST`."""
-        copied: dict[str, Any] = {
-            name: value.copy() if isinstance(value, (np.ndarray, SlipTally)) and name not in AT_REST else value
-            for name, value in vars(self).items()
-        }
-        return Configuration(**copied)
+    def changed(self, **values: Any) -> Configuration:
+        """A configuration with some other values. It shares all others with this one."""
+        return Configuration(**{**vars(self), **values})
 
-    def with_values(self, values: ContactValues) -> Configuration:
-        """A copy with other values. Only those of :data:`AT_REST` are shared, and the arrays of `values`."""
-        fields = {**vars(self), **values._asdict()}
-        return Configuration(**{**fields, "load": self.load.copy(), "slip_tally": self.slip_tally.copy()})
+    def copy(self) -> Configuration:
+        """A copy. It shares ``origin``, ``rest``, ``rest_gap`` and ``rest_slip``: nothing changes them in place."""
+        return self.changed(
+            pressure=self.pressure.copy(), shear=self.shear.copy(), gap=self.gap.copy(), slip=self.slip.copy(),
+            status=self.status.copy(), motion=self.motion.copy(), load=self.load.copy(),
+            slip_tally=self.slip_tally.copy(),
+        )  # fmt: skip
 
     def part(self, nodes: np.ndarray) -> Configuration:
         """A copy with some `nodes` only, indices of shape (k,)."""
         nodal = {name: getattr(self, name)[nodes] for name in NODAL}
-        return replace(self.copy(), slip_tally=self.slip_tally.part(nodes), marks=Marks(), **nodal)
+        return self.changed(
+            motion=self.motion.copy(), load=self.load.copy(), slip_tally=self.slip_tally.part(nodes), marks=Marks(),
+            **nodal,
+        )  # fmt: skip
 
     @property
     def closed(self) -> np.ndarray:
@@ -159,7 +158,7 @@ def embedded(
     fields["gap"], fields["slip"] = np.maximum(true[:n], 0.0), true[n:].copy()
     fields["gap"][nodes], fields["slip"][nodes] = part.gap, part.slip
     tally = slip_tally.with_part(nodes, part.slip_tally)
-    return replace(part, **fields, slip_tally=tally, marks=part.marks.at(nodes)), true
+    return part.changed(**fields, slip_tally=tally, marks=part.marks.at(nodes)), true
 
 
 class Correction(NamedTuple):
@@ -292,8 +291,8 @@ def work_between(system: System, before: Configuration, after: Configuration) ->
         moment = -0.5 * float(system.levers[rim.nodes] @ (before.shear + after.shear)[rim.nodes])
         x, y, turned = moved[rim.motion : rim.motion + 3]
         work = float(load[Q] * x - load[P] * y + moment * turned) + work
-    weights, mean = np.r_[system.weights, system.weights], 0.5 * (before.motion + after.motion)
-    return work + system.drive.work(weights, change, mean, moved, after.load - before.load)
+    mean = 0.5 * (before.motion + after.motion)
+    return work + system.drive.work(system.both_weights, change, mean, moved, after.load - before.load)
 
 
 def dissipation_between(system: System, before: Configuration, after: Configuration) -> float:
@@ -316,9 +315,12 @@ def add_dissipation(system: System, before: Configuration, after: Configuration)
     after.seat_dissipation = before.seat_dissipation + seat_dissipation_between(system, before, after)
 
 
-def slip_tally_with(configuration: Configuration) -> SlipTally:
-    """The slip tally of a configuration, its own slip included."""
-    return configuration.slip_tally.with_slip(configuration.slip - configuration.rest_slip, configuration.closed)
+def slip_tally_with(configuration: Configuration, tally: SlipTally | None = None) -> SlipTally:
+    """The slip tally of a configuration, or another `tally`, with the slip of the configuration in its extremes."""
+    tally = configuration.slip_tally if tally is None else tally
+    if not tally.is_counted:
+        return tally
+    return tally.with_slip(configuration.slip - configuration.rest_slip, configuration.closed)
 
 
 def slip_tally_between(before: Configuration, after: Configuration) -> SlipTally:
@@ -326,7 +328,7 @@ def slip_tally_between(before: Configuration, after: Configuration) -> SlipTally
 
     The mean shear gives the friction energy, as in :func:`dissipation_between`.
     """
-    tally = slip_tally_with(replace(after, slip_tally=before.slip_tally))
+    tally = slip_tally_with(after, before.slip_tally)
     if tally.is_counted:
         slid = np.where(after.closed, after.slip - before.slip, 0.0)
         tally.sums[:2] += np.array([np.abs(slid), -0.5 * slid * (before.shear + after.shear)])
@@ -341,7 +343,7 @@ def elastic_energy(system: System, configuration: Configuration, elastic: np.nda
     """
     tractions = configuration.tractions
     elastic = system.elastic(tractions) if elastic is None else elastic
-    weights = np.concatenate([system.weights, system.weights])
+    weights = system.both_weights
     energy = float(np.sum(weights * tractions * (0.5 * elastic + system.held_displacement(configuration.load))))
     return energy + system.drive.energy(weights, tractions, configuration.motion)
 
@@ -381,14 +383,13 @@ def marked(system: System, before: Configuration, now: Configuration) -> Configu
             tractions = now.pressure[nodes], now.shear[nodes]
             marks = marks.with_borders(each.problem, each.grid, friction[nodes], tractions, now.status[nodes])
         found[name] = marks
-    return replace(now, **found)
+    return now.changed(**found)
 
 
 def worst_residual(system: System, configuration: Configuration) -> float:
-    """The largest of the residuals of :func:`contact_residuals`."""
-    return float(
-        np.max(list(contact_residuals(system, configuration, system.elastic(configuration.tractions)).values()))
-    )
+    """The largest of the residuals of :func:`contact_residuals`; NaN if one is NaN."""
+    found = contact_residuals(system, configuration, system.elastic(configuration.tractions))
+    return float(np.maximum.reduce([*found.values()]))
 
 
 def unbalanced(system: System, configuration: Configuration) -> float:
@@ -398,11 +399,12 @@ def unbalanced(system: System, configuration: Configuration) -> float:
     the resultants of the absolute tractions. Every interface must pass on the force on the pin, and the same moment:
     that of a free pin is M.
     """
-    rows, tractions = system.resultants, configuration.tractions
-    passed = (rows @ tractions).reshape(-1, 3)
+    tractions = configuration.tractions
+    passed = (system.resultants @ tractions).reshape(-1, 3)
     moment = passed[0, 2] if system.problem.held else configuration.load[M]
     left = np.abs(passed - [*system.drive.force(configuration.motion, configuration.load), moment])
-    return float(left.max() / max(float((np.abs(rows) @ np.abs(tractions)).sum()), conditions.SMALLEST))
+    most = float((system.resultant_sizes @ np.abs(tractions)).sum())
+    return float(left.max() / max(most, conditions.SMALLEST))
 
 
 def moment_that_holds(system: System, configuration: Configuration) -> float:

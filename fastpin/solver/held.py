@@ -61,7 +61,8 @@ class HeldContacts:
     @classmethod
     def of(cls, system: System) -> HeldContacts:
         """The held contacts of a system. They are kept as long as the system is, and shared where only loads differ."""
-        return cls._of_systems.setdefault(system.held_as or system, cls())
+        system = system.held_as or system
+        return cls._of_systems.get(system) or cls._of_systems.setdefault(system, cls())
 
     def table(self, system: System, closed: np.ndarray) -> HeldTable | None:
         """The table of the `closed` nodes (n,); None if it has too few digits."""
@@ -106,10 +107,10 @@ def begins_held(system: System) -> bool:
 def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     """The table of a contact with all `closed` nodes (n,) sticking; None if they can't hold the pin."""
     n, size = closed.size, 2 * closed.size + system.motions
-    nodes, others = np.flatnonzero(closed), np.flatnonzero(~closed)
-    stack = np.concatenate([nodes, nodes + n, others, others + n, np.arange(2 * n, size)])
+    nodes, others, places = closed.nonzero()[0], (~closed).nonzero()[0], np.arange(size)
+    stack = np.concatenate([nodes, nodes + n, others, others + n, places[2 * n :]])
     order = np.empty(size, dtype=np.int64)
-    order[stack] = np.arange(size)
+    order[stack] = places
     table = HeldTable(np.empty((size, size), order="F"), stack, order)
     is_sound, in_laminate = False, system.bodies is not None and bool(system.bodies.anisotropy)
     suits = in_laminate or system.motions == 3  # the kernel has the motions of one pin
@@ -264,9 +265,7 @@ class HeldColumns:
         system, contact, now = self._system, self._contact, self._before + stop * self._rate
         sides = RightSides(system.load_displacement(now), system.load_forces(now), self._rest_gap)
         pressure, shear, gap, slip = np.empty((4, contact.status.size))
-        self._settled = ContactValues(
-            pressure, shear, gap, slip, np.empty_like(contact.status), np.empty_like(contact.motion)
-        )  # fmt: skip
+        self._settled = ContactValues(pressure, shear, gap, slip, contact.status.copy(), contact.motion.copy())
         before: np.ndarray | None = None
         while True:
             code, turned, self._errors = held.step(
@@ -297,4 +296,5 @@ class HeldColumns:
     def correct(self, now: Configuration) -> Correction:
         """Correct tractions and motion of `now`, at the stop that was reached, to rounding."""
         error, drift, *beyond = self._errors
-        return Correction(now.with_values(self._settled), error, drift, (beyond[0], beyond[1]))
+        values = {**self._settled._asdict(), "load": now.load.copy(), "slip_tally": now.slip_tally.copy()}
+        return Correction(now.changed(**values), error, drift, (beyond[0], beyond[1]))

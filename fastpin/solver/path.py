@@ -467,15 +467,15 @@ def follow_whole(system: System, start: Configuration, after: np.ndarray, memory
 
 def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:
     """The terms of the work of the loads along a straight piece, from its first load and its rate, shape (loads,)."""
-    weights = np.concatenate([system.weights, system.weights])
+    weights = system.both_weights
     return LoadTerms(
-        column=weights * (system.held_displacement(before)),
-        column_rate=weights * (system.held_displacement(rate)),
+        column=weights * system.held_displacement(before),
+        column_rate=weights * system.held_displacement(rate),
         force=np.array([before[Q], -before[P]]),
         force_rate=np.array([rate[Q], -rate[P]]),
         weights=system.weights,
         levers=system.levers,
-        stops=np.array([rim.nodes.stop for rim in system.interfaces]),
+        stops=system.stops,
         reactions=system.drive.reaction_terms(weights, rate),
     )
 
@@ -483,7 +483,10 @@ def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerm
 def exceeds_bounds(correction: Correction) -> bool:
     """Whether a correction exceeds the bounds of its statuses by more than rounding."""
     settled, (traction, gap) = correction.settled, correction.beyond
-    return bool(traction > MOST_DRIFT * settled.pressure.max() or gap > MOST_DRIFT * settled.gap.max())
+    return bool(
+        (traction > 0.0 and traction > MOST_DRIFT * settled.pressure.max())
+        or (gap > 0.0 and gap > MOST_DRIFT * settled.gap.max())
+    )
 
 
 def _is_rounding(correction: Correction) -> bool:

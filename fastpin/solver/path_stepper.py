@@ -74,7 +74,7 @@ class PathStepper:
         self._strict = strict
         self._memory = TableauMemory(system)
         self._step: PathStep | DriftPath | None = None
-        self._systems: dict[bytes, System] = {}
+        self._systems: dict[tuple[float, bytes], System] = {}
         self._begin = 0.0  # fraction of the history's step at which `_step` starts
         self._releases = self._jumps = 0
 
@@ -149,24 +149,17 @@ class PathStepper:
 
     def _steady_system(self, before: np.ndarray, after: np.ndarray) -> System | None:
         """The system on the way between two loads (loads,); None if the friction changes on it."""
-        system = self._under(before)
-        if self._friction_key(before) == self._friction_key(after):
-            return system
-        return system if np.array_equal(system.friction, self._under(after).friction) else None
+        system, later = self._under(before), self._under(after)
+        return system if system is later or np.array_equal(system.friction, later.friction) else None
 
     def _under(self, load: np.ndarray) -> System:
         """The system with the friction under a load (loads,), kept for the next question."""
-        key = self._friction_key(load)
+        key = load[FRICTION_CHANGE].item(), load[len(LOADS) :].tobytes()  # the last ones are a DriftingSystem's
         if key not in self._systems:
             if len(self._systems) == MOST_SYSTEMS:
                 self._systems.clear()
             self._systems[key] = self._system.under(load)
         return self._systems[key]
-
-    @staticmethod
-    def _friction_key(load: np.ndarray) -> bytes:
-        """The loads that change the friction: that of the history, and the last one of a :class:`DriftingSystem`."""
-        return load[[FRICTION_CHANGE, *range(len(LOADS), load.size)]].tobytes()
 
     def _jump(self, position: Position, piece: Piece, stop: float) -> bool:
         """Take the pin over a snap to a state at a finite distance. Returns whether one was found."""

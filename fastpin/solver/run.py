@@ -172,7 +172,7 @@ class Run:
         self.fractions = options.fractions if self.keep.inside else options.fractions[-1:]
         if start is None:  # from no load, where an interference fit is under its own pressure
             first, load = unloaded_configuration(system), np.zeros(len(LOADS))
-            now = replace(first, dissipation=0.0, work=0.0)
+            now = first.changed(dissipation=0.0, work=0.0)
             start = Restart(0, load, system.scales.force, now, first.dissipation, first.work, Repeats(), {}, {})
         self.corner_log = CornerLog(history, start.marks)
         counts = (options.slip_sums or self.wears) and recorder is not None
@@ -199,16 +199,6 @@ class Run:
     def now(self) -> Configuration:
         """The present configuration."""
         return self.position.now
-
-    @property
-    def _may_repeat(self) -> bool:
-        """Whether a contact may become periodic. A bush that slips may walk, and a worn gap changes."""
-        return not self.wears and len(self.system.interfaces) == 1
-
-    @property
-    def _pin_closed(self) -> np.ndarray:
-        """Whether each node of the pin is in contact, bool, shape (n,)."""
-        return self.now.closed[self.system.interfaces[0].nodes]
 
     @property
     def grid(self) -> Grid:
@@ -292,24 +282,25 @@ class Run:
         configuration that equals the configuration at the corner, or None.
         """
         step, scales, position = self.corner, self.system.scales, self.position
-        target, before = load / scales.loads, self.now.load
+        target, before = load / scales.loads, position.now.load
         self.target, position.reached = load, 0.0
         self.corner_log.begin_step()
         try:
             for piece in pieces(before, target, self.system.is_nearly_neat):
                 self._follow_piece(piece, step)
             if not inside and self.recorder is not None:
-                check_resolution(self.system, self.now)
-            if self._outside is not None and self._outside.is_closed(self.system, self.now):
+                check_resolution(self.system, position.now)
+            if self._outside is not None and self._outside.is_closed(self.system, position.now):
                 raise ArcError(BEYOND)
-            known = None
+            known, now = None, position.now
             if not self.wears and not self.is_coarse:
-                self.position.now = marked(self.system, self.last_corner, self.now)
-            if self._may_repeat:
-                known = self.repeats.recall(self.now, ends_cycle, step)
+                now = position.now = marked(self.system, self.last_corner, now)
+            if not self.wears and len(self.system.interfaces) == 1:  # a bush may walk, and a worn gap changes
+                known = self.repeats.recall(now, ends_cycle, step)
             if known is not None:
-                sums = {name: getattr(self.now, name) for name in ("dissipation", "work", "slip_tally")}
-                position.now = replace(known.configuration, **sums)
+                position.now = known.configuration.changed(
+                    dissipation=now.dissipation, work=now.work, slip_tally=now.slip_tally
+                )
             if self.recorder is not None and kept:
                 self._keep(step, 1.0)
         except SolveError as error:
@@ -324,7 +315,7 @@ class Run:
 
     def _follow_piece(self, piece: Piece, step: int) -> None:
         """Follow one straight piece of a step, from stop to stop."""
-        position = self.position
+        position, pin = self.position, self.system.interfaces[0].nodes
         self.stepper.begin_piece()
         kept = {stop for stop in self.fractions.tolist() if piece.begin < stop <= piece.end}
         for stop in sorted({*kept, piece.end}):
@@ -332,15 +323,15 @@ class Run:
             check_turning(self.system, load)
             vanishes = self.system.is_nearly_neat and not presses(load)
             until = max(stop - LAST_PART * (piece.end - piece.begin), position.reached) if vanishes else stop
-            aim = piece.load_at(until)
-            while not np.array_equal(self.now.load, aim):
-                if self._pin_closed.any():
+            aim = piece.load_at(until) if vanishes else load
+            while (position.now.load != aim).any():
+                if position.now.closed[pin].any():
                     self.stepper.advance(position, piece, until, lambda reached: self.report(step, reached))
                 else:
                     self._touch_down(aim, until)
-                check_bond(self.system, self.now)
+                check_bond(self.system, position.now)
             position.reached = stop
-            if vanishes and not np.array_equal(self.now.load, load):
+            if vanishes and (position.now.load != load).any():
                 self._release(load)
             self._release_if_unloaded(piece, load)
             if stop in kept and stop < 1.0 and self.recorder is not None:
@@ -353,17 +344,18 @@ class Run:
         position = self.position
         self.stepper.leave(position)
         if isinstance(self.system, JointSystem) and not is_pushed(load):
-            position.now = follow_floating(self.system, self.now, load)
-            if np.array_equal(self.now.load, load):
+            position.now = follow_floating(self.system, position.now, load)
+            if np.array_equal(position.now.load, load):
                 return
-        before = self.now.load.copy()
+        before = position.now.load.copy()
         before[[P, Q, M]] = 0.0  # a contact that was released under a little load begins anew from none
-        position.now, part = self._first_contact(before, load)
-        position.now.slip_tally = slip_tally_with(self.now)
-        position.touched |= self.now.closed
+        now, part = self._first_contact(before, load)
+        now.slip_tally = slip_tally_with(now)
+        position.now = now
+        position.touched |= now.closed
         position.reached += part * (stop - position.reached)
         if part == 1.0:
-            self.now.load = load
+            now.load = load
         position.fresh = part if part < 1.0 else 0.0
 
     def _first_contact(self, before: np.ndarray, load: np.ndarray) -> tuple[Configuration, float]:
@@ -379,9 +371,10 @@ class Run:
 
     def _release_if_unloaded(self, piece: Piece, load: np.ndarray) -> None:
         """Release the pin after a complete unloading, when the contact carries nothing any more."""
-        if is_pushed(load) or not self._pin_closed.any():
+        pin = self.system.interfaces[0].nodes
+        if is_pushed(load) or not self.now.closed[pin].any():
             return
-        left, before = float(self.now.pressure[self.system.interfaces[0].nodes].max()), force_of(piece.before)
+        left, before = float(self.now.pressure[pin].max()), force_of(piece.before)
         if self.system.drive.has_displacements:  # the forces of the nodes hold the rounding of a large displacement
             left, before = float(self.system.weights @ self.now.pressure), 1.0
         if left <= UNLOADED_PRESSURE * before:
@@ -407,8 +400,8 @@ class Run:
 
     def _at_corner(self, configuration: Configuration) -> Configuration:
         """The configuration at a corner, with the sums and the slip tally of a step that begins there."""
-        tally = self._no_slip.with_slip(configuration.slip - configuration.rest_slip, configuration.closed)
-        return replace(configuration, dissipation=0.0, work=0.0, seat_dissipation=0.0, slip_tally=tally)
+        tally = slip_tally_with(configuration, self._no_slip)
+        return configuration.changed(dissipation=0.0, work=0.0, seat_dissipation=0.0, slip_tally=tally)
 
     def _show_corner(self) -> None:
         """Tell the recorder and the progress that the run has reached a corner."""
@@ -469,38 +462,41 @@ class Run:
 
     def _keep(self, step: int, fraction: float) -> None:
         """Check the present configuration and hand it to the recorder as a state."""
-        elastic = self.system.elastic(self.now.tractions)
-        residuals = contact_residuals(self.system.under(self.now.load), self.now, elastic)
-        left = unbalanced(self.system, self.now)
+        system, now = self.system, self.now
+        elastic = system.elastic(now.tractions)
+        residuals = contact_residuals(system.under(now.load), now, elastic)
+        left = unbalanced(system, now)
         if not left <= MAX_RESIDUAL:
             raise ConvergenceError(f"the state leaves a body out of equilibrium (by {left:.2g}) and is not returned")
-        if not np.max(list(residuals.values())) <= MAX_RESIDUAL:
+        if not all(residual <= MAX_RESIDUAL for residual in residuals.values()):
             worst = max(residuals, key=lambda name: residuals[name])
             raise ConvergenceError(
                 f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
             )
-        self.corner_log.latest.kept.append((self.now.dissipation, self.now.work))
+        self.corner_log.latest.kept.append((now.dissipation, now.work))
         assert self.recorder is not None
         self.recorder.add(self._state(step, fraction, residuals, elastic))
-        self.slip_tally.keep(self.now.slip_tally)
+        self.slip_tally.keep(now.slip_tally)
 
     def _state(self, step: int, fraction: float, residuals: dict[str, float], elastic: np.ndarray) -> State:
         """The present configuration, with its `elastic` gap and slip (2n,), as a state, SI; with the seat of a bush."""
         system, now = self.system, self.now
         drive, way = system.drive, now.rest - now.origin
-        way = np.where(np.isnan(way), 0.0, way)
+        way[np.isnan(way)] = 0.0
         moved = drive.position(now.tractions, now.motion, now.load, way[:2])
         load = drive.with_reactions(now.motion, now.load)
         if system.problem.held:
             load = load.copy()
-            load[M] = moment_that_holds(self.system, now)
-        heat = thermal_energy(system, now)
+            load[M] = moment_that_holds(system, now)
+        heat, named = thermal_energy(system, now), self.target
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
-        is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
+        if load is not now.load or fraction < 1.0:
+            is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
+            named = np.where(is_given, self.target, load * system.scales.loads)
         common = {
             "step": step,
             "fraction": fraction,
-            "load": named_load(np.where(is_given, self.target, load * system.scales.loads)),
+            "load": named_load(named),
             "work": (self.work + now.work - heat) * system.scales.energy,
             "energy": (elastic_energy(system, now, elastic) - heat) * system.scales.energy,
             "residuals": residuals,

@@ -169,7 +169,7 @@ def check_resolution(system: System, now: Configuration) -> None:
     """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
     pin = system.interfaces[0]
     closed = now.closed[pin.nodes]
-    if np.any(closed[:-2] & closed[1:-1] & closed[2:]) or force_on_pin(system, now) <= NEXT_TO_NOTHING:
+    if (closed[:-2] & closed[1:-1] & closed[2:]).any() or force_on_pin(system, now) <= NEXT_TO_NOTHING:
         return
     most = max((patch.size for patch in runs(pin.grid, closed)), default=LEAST_CLOSED)
     if most < LEAST_CLOSED:
@@ -189,5 +189,5 @@ def check_turning(system: System, load: np.ndarray) -> None:
 
 def check_bond(system: System, now: Configuration) -> None:
     """Raise :class:`NoEquilibriumError` if a bonded bush slips or opens in its seat."""
-    if np.any(now.status[system.bonded] != STICK):
+    if (now.status[system.bonded] != STICK).any():
         raise NoEquilibriumError(OPENED)

@@ -17,7 +17,7 @@ import math
 import signal
 import threading
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, fields, replace
 from types import FrameType
 from typing import Any, NamedTuple, TypeVar
@@ -412,10 +412,13 @@ def one_blas_thread() -> AbstractContextManager[Any]:
 
     Large products have two threads all the same (runtime/products.py).
     """
-    return _blas_libraries().limit(limits=1, user_api="blas")
+    libraries = _blas_libraries()
+    if all(library.num_threads == 1 for library in libraries.lib_controllers):
+        return nullcontext()
+    return libraries.limit(limits=1)
 
 
 @functools.cache
 def _blas_libraries() -> ThreadpoolController:
     """The BLAS libraries of this process. Finding them takes longer than a small step."""
-    return ThreadpoolController()
+    return ThreadpoolController().select(user_api="blas")
