@@ -467,7 +467,7 @@ class Session:
         history = LoadHistory.from_array(given[None]) if self._expected is None else self._expected
 
         def step(system: System, strict: bool) -> Run:
-            return self._step_to(self._start(system, None, strict), place, given)
+            return self._lead(self._start(system, None, strict), place, given)
 
         return self._on_first_nodes(place.problem, history, step)
 
@@ -477,9 +477,9 @@ class Session:
         if self._run is None:
             self._run = self._start(self._system_at(here), here.restart)
         with suppress(ConvergenceError):
-            return self._step_to(self._run, place, given)
+            return self._lead(self._run, place, given)
         try:  # narrow contacts are let go
-            return self._step_to(self._start(self._system_at(here), here.restart, strict=False), place, given)
+            return self._lead(self._start(self._system_at(here), here.restart, strict=False), place, given)
         except ConvergenceError as error:
             if self._grid is not None or self._options.arc is not None:
                 raise
@@ -490,7 +490,7 @@ class Session:
         history = place.loads.history()
 
         def follow(system: System, strict: bool) -> Run:
-            return self._follow(self._start(system, None, strict, history), place)
+            return self._lead(self._start(system, None, strict, history), place)
 
         if place.grid is not None:
             return follow(self._system_at(place), True)
@@ -524,36 +524,23 @@ class Session:
                         raise
                     run = self._start(wider, carried(run.system, wider, run.bookmark()), run.strict)
             self._recorder.begin(run)
-            self._arrive(place, self._step_to(run, place, given))
+            self._arrive(place, self._lead(run, place, given))
         return self._here.state
 
-    def _step_to(self, run: Run, place: Place, given: np.ndarray) -> Run:
-        """Follow one step to the last load of a place, if need be on a wider arc. Returns the run that got there."""
-        load = complete_load(given, run.load)
-        while True:
-            restart = run.bookmark()
-            try:
-                run.step_to(load)
-            except ArcError as error:
-                lost = error
-            else:
-                if not self._recorder.touched_outside:
-                    return run
-                lost = touches_outside(run)
-            system = self._wider_system(run)
-            if system is None:
-                return self._on_new_nodes(place, lost)
-            run = self._start(system, carried(run.system, system, restart), run.strict)
+    def _lead(self, run: Run, place: Place, given: np.ndarray | None = None) -> Run:
+        """Follow one step to the `given` last load of a place, or the history of a run; if need be on a wider arc.
 
-    def _follow(self, run: Run, place: Place) -> Run:
-        """Follow the history of a run to its end, if need be on a wider arc. Returns the run that got there."""
+        Returns the run that got there.
+        """
+        load = None if given is None else complete_load(given, run.load)
         while True:
+            last = None if load is None else run.bookmark()
             try:
-                run.follow()
+                run.follow() if load is None else run.step_to(load)
             except ArcError as error:
                 lost = error
             except ConvergenceError:
-                if not run.strict:
+                if load is not None or not run.strict:
                     raise
                 run = self._start(run.system, run.restart(), False, run.history)
                 continue
@@ -564,9 +551,11 @@ class Session:
             system = self._wider_system(run)
             if system is None:
                 return self._on_new_nodes(place, lost)
-            # Where the pin has touched beyond the arc, nobody knows since when: from no load.
-            last = None if self._recorder.touched_outside else carried(run.system, system, run.restart())
-            run = self._start(system, last, run.strict, run.history)
+            if load is None and not self._recorder.touched_outside:
+                last = run.restart()
+            # Where a history has touched beyond the arc, nobody knows since when: from no load.
+            last = None if last is None else carried(run.system, system, last)
+            run = self._start(system, last, run.strict, run.history if load is None else NO_HISTORY)
 
     def _wider_system(self, run: Run) -> System | None:
         """The system of the next wider arc; None if there is none."""
