@@ -36,6 +36,16 @@ class BodyPair:
         return {"pin": self.pair.pin, "plate": self.pair.plate, **({"bush": bush.material} if bush else {})}
 
     @cached_property
+    def owners(self) -> Mapping[str, str]:
+        """The words for the bodies at the edges "plate", "seat" and "pin" that have a stress, from the hole outwards.
+
+        The hole's edge is "plate", also in a bush. A bush as the pin of its seat has no stress there: its stress is
+        that of its joint.
+        """
+        edges = {"plate": "plate"} if self.bush is None else {"plate": "bush", "seat": "plate"}
+        return edges if self.pin_body.is_bush else {**edges, "pin": "pin"}
+
+    @cached_property
     def pin_rim(self) -> Rim:
         """The rim of the pin, with the radius of the hole."""
         return Rim(self.radius, 1.0, self.pair.pin, self.pair.plane)

@@ -145,9 +145,7 @@ def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:
 
 def bodies_of(problem: Problem) -> tuple[Body, ...]:
     """The bodies of :data:`BODIES` that a problem has, from the hole outwards, then the pin."""
-    if problem.pin_body.is_bush:
-        return ("plate",)  # the stress of the bush is that of its joint
-    return ("plate", "pin") if problem.joint.bush is None else ("plate", "seat", "pin")
+    return tuple(problem.joint.owners)  # type: ignore[arg-type]
 
 
 def material_of(problem: Problem, body: Body) -> Material:
@@ -162,18 +160,14 @@ def material_of(problem: Problem, body: Body) -> Material:
         raise InputError(
             "body", "the pin of a seat is its bush: its stress is that of the joint, whose pin loads it, too"
         )
-    if body != "seat":
-        return problem.surfaces.pin if body == "pin" else problem.surfaces.plate
-    if problem.joint.bush is None:
+    if body not in problem.joint.owners:
         raise InputError("body", '"seat" is the edge of the plate round a bush; this plate has no bush')
-    return problem.pair.plate
+    return problem.joint.materials[problem.joint.owners[body]]
 
 
 def owner_of(problem: Problem, body: str) -> str:
     """The word for the body that the material of :func:`material_of` belongs to: "pin", "plate" or "bush"."""
-    if problem.pin_body.is_bush if body == "pin" else body == "plate" and problem.joint.bush is not None:
-        return "bush"
-    return "plate" if body == "seat" else body
+    return "bush" if body == "pin" and problem.pin_body.is_bush else problem.joint.owners.get(body, body)
 
 
 def edge_body(problem: Problem, body: str) -> str:

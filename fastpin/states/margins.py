@@ -12,14 +12,14 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from fastpin.model.angles import from_bottom
-from fastpin.model.points import bodies_of
+from fastpin.model.points import bodies_of, elastic_bodies, material_of, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.extremes import Found
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.states.walking import Walk
-from fastpin.states.yielding import PREFIX, elastic_owners, place_words, von_mises_peak
+from fastpin.states.yielding import PREFIX, place_words, von_mises_peak
 
 MARGINS = {
     "yield": "yield strength over the von Mises stress",
@@ -98,7 +98,8 @@ def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[i
         ``read(places)`` gives the states at these places.
     """
     rows = []
-    for owner, material in elastic_owners(problem).items():
+    for body in elastic_bodies(problem):
+        owner, material = owner_of(problem, body), material_of(problem, body)
         extreme = extremes.get((PREFIX + owner, "largest"))
         state = None if extreme is None else read([extreme.place])[0]
         strengths = {"yield": material.known_yield_strength}

@@ -14,8 +14,7 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom
 from fastpin.model.grid import Grid
-from fastpin.model.materials import Material
-from fastpin.model.points import Body, Points, elastic_bodies, known_depth, material_of, near_rim
+from fastpin.model.points import Body, Points, elastic_bodies, known_depth, material_of, near_rim, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.ties import top_angle
 from fastpin.model.units import units
@@ -152,23 +151,13 @@ def von_mises_peak(state: State, owner: str, edges_only: bool = False) -> MisesP
     return MisesPeak(float(found[top]), float(places.theta[top]), places.circle[top])
 
 
-def elastic_owners(problem: Problem) -> dict[str, Material]:
-    """The bodies of :data:`OWNERS` that have a stress, with their materials, the bush first.
-
-    A bush as the pin of its seat has none there: its stress is that of its joint.
-    """
-    materials = problem.joint.materials
-    elastic = [owner for owner in OWNERS[::-1] if owner in materials and not materials[owner].is_rigid]
-    return {owner: materials[owner] for owner in elastic if owner != "pin" or not problem.pin_body.is_bush}
-
-
 def yielding_owners(problem: Problem) -> dict[str, float]:
     """The elastic bodies of :data:`OWNERS` whose yield strength is known, with the strength, Pa.
 
     Stresses without dimensions have none.
     """
-    known = {} if problem.dimensionless else elastic_owners(problem)
-    strengths = ((owner, material.known_yield_strength) for owner, material in known.items())
+    bodies = () if problem.dimensionless else elastic_bodies(problem)
+    strengths = ((owner_of(problem, body), material_of(problem, body).known_yield_strength) for body in bodies)
     return {owner: strength for owner, strength in strengths if strength is not None}
 
 
