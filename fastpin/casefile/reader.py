@@ -24,8 +24,9 @@ from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_we
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
 from fastpin.model import LOADS, SolveOptions, checks, synonyms
+from fastpin.model.acting import check_arc, check_keep
 from fastpin.model.assessment import check_assessment
-from fastpin.model.case import BESIDE, About, Case, check_arc, check_keep, check_wear
+from fastpin.model.case import BESIDE, About, Case, check_wear
 from fastpin.model.fields import FIELDS
 from fastpin.model.keys import CASE
 from fastpin.model.laminate import LAMINATE_KEYS

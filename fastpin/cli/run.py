@@ -21,7 +21,8 @@ from fastpin.cli.plot import load_seat, seat_title
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.errors import InputError, ReadingError
 from fastpin.kernels import first
-from fastpin.model.case import BESIDE, Case, beside_of, check_keep
+from fastpin.model.acting import check_keep
+from fastpin.model.case import BESIDE, Case, beside_of
 from fastpin.model.doubts import warn_of
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES

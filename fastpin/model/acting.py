@@ -1,4 +1,4 @@
-"""The loads that can act in a problem."""
+"""The loads that can act in a problem, and the options of the solver that fit it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from fastpin.errors import InputError
 from fastpin.model.checks import MOST_FRICTION, number
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, REMOTE, THERMAL
+from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 
 MOST_LOAD = 1e50
@@ -92,3 +93,15 @@ def check_temperature(problem: Problem, name: str, largest: float) -> None:
         if abs(material.expansion * largest) > MOST_STRAIN:
             words = f"{largest:g} K strain the {body} by {material.expansion * largest:g}"
             raise InputError(name, f"{words}; at most {MOST_STRAIN:g} are allowed")
+
+
+def check_arc(problem: Problem, options: SolveOptions) -> None:
+    """Raise :class:`InputError` if the arc is too short: the nodes must go all round."""
+    if options.arc is not None and not options.is_full_turn and (reason := problem.needs_circle):
+        raise InputError("arc", f"{reason}: the arc must span 2 pi, or be left out")
+
+
+def check_keep(history: LoadHistory, options: SolveOptions) -> None:
+    """Raise :class:`InputError` if the ends of cycles are to be kept, but the history has no cycles."""
+    if options.keep == "cycles" and not history.longest_cycle:
+        raise InputError("keep", "the history has no cycles: none of its blocks is repeated")

@@ -195,12 +195,6 @@ class Case:
         check_fields(self, string, "title")
 
 
-def check_arc(problem: Problem, options: SolveOptions) -> None:
-    """Raise :class:`InputError` if the arc is too short: the nodes must go all round."""
-    if options.arc is not None and not options.is_full_turn and (reason := problem.needs_circle):
-        raise InputError("arc", f"{reason}: the arc must span 2 pi, or be left out")
-
-
 def check_wear(problem: Problem) -> None:
     """Raise :class:`InputError` if no wear can be followed in a joint: its bush slips in its seat."""
     if problem.seat is not None or problem.pin_body.is_bush:
@@ -208,9 +202,3 @@ def check_wear(problem: Problem) -> None:
             "bonded",
             "must be true, in an infinite plate or a ring: the wear in other bushes is not known",
         )
-
-
-def check_keep(history: LoadHistory, options: SolveOptions) -> None:
-    """Raise :class:`InputError` if the ends of cycles are to be kept, but the history has no cycles."""
-    if options.keep == "cycles" and not history.longest_cycle:
-        raise InputError("keep", "the history has no cycles: none of its blocks is repeated")

@@ -13,7 +13,6 @@ import numpy as np
 from fastpin import states
 from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
-from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import instance, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import CycleKey, LoadHistory
@@ -34,6 +33,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from fastpin.model.assessment import FatigueAssessment  # a solve needs no assessment
     from fastpin.states.extremes import Extremes  # this module imports compiled code
 
 
@@ -354,6 +354,7 @@ class Result(Sequence[State]):
     def _assessed_states(self, how: FatigueAssessment | None) -> Any:
         """Return the states of one pass of the spectrum of an assessment."""
         from fastpin.damage import cycle_states
+        from fastpin.model import FatigueAssessment
 
         chosen = FatigueAssessment() if how is None else how
         if instance("how", chosen, FatigueAssessment, "a FatigueAssessment").over == "history":

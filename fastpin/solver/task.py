@@ -28,8 +28,7 @@ from threadpoolctl import ThreadpoolController
 from fastpin.elasticity.large import build_system
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
-from fastpin.model.acting import check_loads
-from fastpin.model.case import check_arc, check_keep
+from fastpin.model.acting import check_arc, check_keep, check_loads
 from fastpin.model.checks import as_toml, check_callable, instance
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
@@ -195,7 +194,7 @@ class Task:
         listed = list(grids)
         return after_grid(unfit.grid, listed) if any(_is_same(grid, unfit.grid) for grid in listed) else listed
 
-    @property
+    @functools.cached_property
     def force(self) -> float:
         """The reference force of the history, N/m."""
         return reference_force(self.problem, self.history.distinct())

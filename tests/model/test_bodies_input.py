@@ -11,8 +11,7 @@ import pytest
 from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.bodies.compliance import Compliance
 from fastpin.errors import InputError
-from fastpin.model.acting import check_loads
-from fastpin.model.case import check_arc
+from fastpin.model.acting import check_arc, check_loads
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 import fastpin
 from fastpin.casefile.reader import parse_case
 from fastpin.errors import CaseFileError, FastpinError, InputError, printable
-from fastpin.model.acting import check_loads
-from fastpin.model.case import Case, check_arc
+from fastpin.model.acting import check_arc, check_loads
+from fastpin.model.case import Case
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import Corner
 from fastpin.model.options import SolveOptions
