@@ -209,7 +209,7 @@ class System:
         found[0, : n - end], found[2, : n - end], found[1, : n - end] = *both[: n - end].T, both[n - end :, 1]
         return found
 
-    @property
+    @cached_property
     def motions(self) -> int:
         """Number m of motions, and of conditions of equilibrium."""
         return len(self.motion_rows)
@@ -217,8 +217,8 @@ class System:
     @cached_property
     def equations(self) -> Equations:
         """The arrays of the equations for kernels, all in the order of C."""
-        arrays = self.motion, self.equilibrium, self.motion_rows, self.friction
-        return Equations(*(np.ascontiguousarray(array) for array in arrays))
+        matrices = map(np.ascontiguousarray, (self.motion, self.equilibrium, self.motion_rows, self.friction))
+        return Equations(*matrices)
 
     @cached_property
     def interfaces(self) -> tuple[Interface, ...]:
@@ -228,7 +228,7 @@ class System:
     @cached_property
     def width(self) -> float:
         """Typical weight of a node."""
-        return float(self.weights.mean())
+        return float(self.weights.sum() / self.weights.size)
 
     @cached_property
     def levers(self) -> np.ndarray:

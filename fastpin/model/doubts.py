@@ -131,7 +131,7 @@ def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[
         return []
     found = []
     distinct = {id(pressure): pressure for pressure in pressures}
-    peak = max((float(np.max(pressure, initial=0.0)) for pressure in distinct.values()), default=0.0)
+    peak = max((float(pressure.max(initial=0.0)) for pressure in distinct.values()), default=0.0)
     strain = problem.surfaces.beta_star * peak  # linear elasticity fails above 0.05
     if strain > 0.05 and _has_units(problem):
         words = f"contact strains of about {strain:.2g} are beyond linear elasticity"

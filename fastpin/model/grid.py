@@ -44,7 +44,7 @@ class Grid:
         if theta.ndim != 1:
             raise InputError("theta", f"must have the shape (nodes,), not {theta.shape}")
         whole_number("nodes", theta.size, LEAST_NODES, MAX_NODES)
-        if not np.all(np.isfinite(theta)) or np.any(np.diff(theta) <= 0.0):
+        if (theta[1:] <= theta[:-1]).any():
             raise InputError("theta", "node angles must be finite and strictly increasing")
         if theta[-1] - theta[0] >= 2.0 * math.pi:
             raise InputError("theta", "nodes must span less than a full turn")
@@ -177,10 +177,8 @@ class Grid:
 
     @cached_property
     def _trig_moments(self) -> tuple[np.ndarray, np.ndarray]:
-        total = np.zeros(self.size, dtype=complex)
-        for length, sense in zip(self.halves, (-1.0, 1.0), strict=True):
-            total += _half_hat_moment(length, sense)
-        total *= np.exp(1j * self.theta)
+        left, right = _half_hat_moments(np.array(self.halves))
+        total = (left + right) * np.exp(1j * self.theta)
         total.setflags(write=False)
         return total.real, total.imag
 
@@ -217,15 +215,19 @@ def _graded_counts(places: Sequence[tuple[float, float]]) -> tuple[np.ndarray, n
     return theta, np.r_[0.0, np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(theta))]
 
 
-def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:
-    """int_0^h (1 - t/h) exp(i sense t) dt = (h/2) sinc(h/2)^2 + i sense (1 - sin(h)/h), for lengths h >= 0."""
+def _half_hat_moments(length: np.ndarray) -> np.ndarray:
+    """int_0^h (1 - t/h) exp(i sense t) dt = (h/2) sinc(h/2)^2 + i sense (1 - sin(h)/h), for lengths h >= 0, (2, n).
+
+    The sense of the left halves, the first row, is -1; that of the right ones is 1.
+    """
     even = 0.5 * length * np.sinc(0.5 * length / math.pi) ** 2
     series = np.zeros_like(length)  # series of 1 - sin(h)/h: no digits are lost where h is small
     square = length**2
     for k in range(8, 0, -1):
         series = square / (2.0 * k * (2.0 * k + 1.0)) * (1.0 - series)
     odd = np.where(length > 0.5, 1.0 - np.sinc(length / math.pi), series)
-    return even + 1j * sense * odd
+    odd[0] *= -1.0
+    return even + 1j * odd
 
 
 def halved(grid: Grid, direction: float | None) -> Grid:

@@ -529,10 +529,10 @@ def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | Non
     first = np.zeros(len(LOADS)) if initial is None else number_array("initial", initial)
     if first.shape != (len(LOADS),):
         raise InputError("initial", f"must have the shape ({len(LOADS)},), not {first.shape}")
-    values = np.vstack([first, *parts])
+    values = np.concatenate([first[None], *parts])
     rows = np.where(np.isnan(values), 0, np.arange(len(values))[:, None])
-    filled: np.ndarray = np.take_along_axis(values, np.maximum.accumulate(rows), axis=0)[1:]
-    return filled
+    filled: np.ndarray = values[np.maximum.accumulate(rows), np.arange(len(LOADS))]
+    return filled[1:]
 
 
 def _times(block: Block, count: int) -> np.ndarray:

@@ -120,32 +120,29 @@ def inner(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def argument_types(values: tuple[Any, ...]) -> tuple[Any, ...]:
     """The dispatch key of the argument types. :class:`KeyError` if a type is neither array nor number."""
-    found: list[Any] = []
-    for value in values:
-        kind = type(value)
-        if kind is ndarray:
-            found += value.dtype, value.ndim, value.flags.num & LAYOUT
-        elif kind in SCALARS:
-            found.append(SCALARS[kind])
-        elif issubclass(kind, tuple):
-            found += kind, argument_types(value)
-        else:
-            raise KeyError(kind)
-    return tuple(found)
+    return tuple(
+        [
+            (value.dtype, value.ndim, value.flags.num & LAYOUT)
+            if type(value) is ndarray
+            else (type(value), argument_types(value))
+            if isinstance(value, tuple)
+            else SCALARS[type(value)]
+            for value in values
+        ]
+    )
 
 
 def signature(types: tuple[Any, ...]) -> str:
     """The key of :func:`argument_types` as text. Keys that the compiler takes for the same types have the same text."""
-    words, rest = [], iter(types)
-    for one in rest:
-        if isinstance(one, np.dtype):
-            dimensions, bits = next(rest), next(rest)
+    words = []
+    for one in types:
+        kind = one[0]
+        if isinstance(kind, np.dtype):
+            _, dimensions, bits = one
             order = "C" if bits & C_ORDER else "F" if bits & F_ORDER else "A"
-            words.append(f"{one.str}{dimensions}{order}{bits & (ALIGNED | WRITEABLE):x}")
-        elif isinstance(one, type):
-            words.append(f"{one.__name__}({signature(next(rest))})")
+            words.append(f"{kind.str}{dimensions}{order}{bits & (ALIGNED | WRITEABLE):x}")
         else:
-            words.append(one)
+            words.append(f"{kind.__name__}({signature(one[1])})" if isinstance(kind, type) else one)
     return ", ".join(words)
 
 

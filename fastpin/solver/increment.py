@@ -65,8 +65,8 @@ def implicit_step(system: System, start: Configuration, load: np.ndarray, patien
 def _iterate(
     system: System, start: Configuration, load: np.ndarray, first: np.ndarray, one_at_a_time: bool, iterations: int
 ) -> Configuration | None:
-    status = first.astype(np.int8).copy()
-    if not np.any(status != OPEN):
+    status = first.astype(np.int8)
+    if not (status != OPEN).any():
         return None
     seen: set[bytes] = set()
     for _ in range(iterations):
@@ -78,11 +78,12 @@ def _iterate(
         if solution is None:
             return None
         wanted = _wanted_status(system, start, solution)
-        changes = np.flatnonzero(wanted != status)
-        if changes.size == 0:
+        changes = wanted != status
+        if not changes.any():
             return accept_solution(start, solution, load)
         if one_at_a_time:
-            status[changes[0]] = wanted[changes[0]]
+            first_change = changes.argmax()
+            status[first_change] = wanted[first_change]
         else:
             status = wanted
     return None
@@ -93,7 +94,7 @@ def _wanted_status(system: System, start: Configuration, solution: ContactValues
     wanted = np.empty_like(solution.status)
     conditions.wanted_status(system.friction, solution, start.slip, start.rest_gap, TOLERANCE, wanted)
     for nodes in system.turning:
-        if not np.any(wanted[nodes] == STICK):
+        if not (wanted[nodes] == STICK).any():
             slid = solution.slip[nodes] - start.slip[nodes]
             part = solution._replace(
                 pressure=solution.pressure[nodes], shear=solution.shear[nodes], status=solution.status[nodes]

@@ -23,7 +23,6 @@ from fastpin.model.loads import P, Q
 from fastpin.solver.configuration import Configuration, Correction, snap_to_bounds, solve_unknowns
 from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts, begins_held
 from fastpin.solver.settling import settle
-from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 
@@ -108,27 +107,8 @@ class PathStep:
         self.before = configuration.load.copy()
         self.rate = after - self.before
         n, now = system.grid.size, self.now
-        self._contact = Contact(
-            now.pressure,
-            now.shear,
-            now.gap,
-            now.slip,
-            now.status,
-            now.status.copy(),
-            np.zeros(n, dtype=bool),
-            now.motion,
-            now.rest_slip,
-            now.slip_tally.sums,
-        )
+        self._contact, self._queue = _arrays_of(now)
         self._load = load_terms(system, self.before, self.rate)
-        self._queue = Queue(
-            node=np.zeros(2 * n, dtype=np.int64),
-            status=np.zeros(2 * n, dtype=np.int8),
-            counts=np.zeros(exchange.COUNTS, dtype=np.int64),
-            sums=np.zeros(exchange.SUMS),
-        )
-        sums = configuration.dissipation, configuration.work, configuration.seat_dissipation
-        self._queue.sums[[exchange.DISSIPATION, exchange.WORK, exchange.SEAT_DISSIPATION]] = sums
         self._all_at_once = max(32, n // 20)
         self._sample: slice | np.ndarray = slice(None)
         self._sampled: Operator | np.ndarray = system.operator
@@ -443,26 +423,31 @@ def follow_whole(system: System, start: Configuration, after: np.ndarray, memory
     table = HeldContacts.of(system).table(system, start.closed) if begins_held(system) else None
     if table is None:
         return None
-    contact = Contact(
-        start.pressure.copy(), start.shear.copy(), start.gap.copy(), start.slip.copy(), start.status.copy(),
-        start.status.copy(), np.zeros(n, dtype=bool), start.motion.copy(), start.rest_slip,
-        start.slip_tally.sums.copy(),
-    )  # fmt: skip
-    sums = np.array([0.0, start.dissipation, start.work, start.seat_dissipation])
-    counts = np.zeros(exchange.COUNTS, dtype=np.int64)
-    queue = Queue(np.zeros(2 * n, dtype=np.int64), np.zeros(2 * n, dtype=np.int8), counts, sums)
-    rate = after - start.load
+    now, rate = start.copy(), after - start.load
+    contact, queue = _arrays_of(now)
     columns = HeldColumns(system, table, contact, start.load, rate, start.rest_gap, memory)
     code = columns.follow(load_terms(system, start.load, rate), queue, 1.0, MOST_EVENTS * n, n)
     if code != exchange.REACHED:
         return None
-    correction = columns.correct(start)
+    now.load = after
+    correction = columns.correct(now)
     if correction.drift > SEVERE_DRIFT or not correction.error <= MOST_ERROR or exceeds_bounds(correction):
         return None
-    now = correction.settled
-    now.load, now.slip_tally = after.copy(), SlipTally(contact.slip_tally)
-    _, now.dissipation, now.work, now.seat_dissipation = sums.tolist()
+    now, counts = correction.settled, queue.counts
+    _, now.dissipation, now.work, now.seat_dissipation = queue.sums.tolist()
     return WholeStep(now, contact.touched, int(counts[exchange.EVENTS]), int(counts[exchange.EXCHANGES]))
+
+
+def _arrays_of(now: Configuration) -> tuple[Contact, Queue]:
+    """The arrays on which kernels follow a step: those of the configuration `now`, and an empty queue."""
+    n = now.status.size
+    contact = Contact(
+        now.pressure, now.shear, now.gap, now.slip, now.status, now.status.copy(), np.zeros(n, dtype=bool), now.motion,
+        now.rest_slip, now.slip_tally.sums,
+    )  # fmt: skip
+    sums = np.array([0.0, now.dissipation, now.work, now.seat_dissipation])
+    counts = np.zeros(exchange.COUNTS, dtype=np.int64)
+    return contact, Queue(np.zeros(2 * n, dtype=np.int64), np.zeros(2 * n, dtype=np.int8), counts, sums)
 
 
 def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:

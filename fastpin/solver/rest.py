@@ -18,6 +18,9 @@ from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.interfaces import PinView, part_of, with_part, without_force
 from fastpin.solver.path import PathStep, StepLostError
 
+SHAPING = [SXX, SYY, SXY, *THERMAL]
+"""Loads that change the shape of the hole."""
+
 FINE = 1441
 """Angles round the hole at which a gap that varies is looked at."""
 
@@ -299,8 +302,8 @@ def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.
     Returns the gap and its first and second derivative at the angles `theta`, rad, dimensionless, shape (3, ...).
     """
     if system.bodies is None:
-        sxx, syy, sxy = load[[SXX, SYY, SXY]].tolist()
-        warmed = float(system.loads[0, THERMAL] @ load[list(THERMAL)])
+        sxx, syy, sxy, *warm = load[SHAPING].tolist()
+        warmed = float(system.loads[0, THERMAL] @ warm) if any(warm) else 0.0
         if not (sxx or syy or sxy):
             found = np.zeros((3, *np.shape(theta)))
             found[0] = system.rest_clearance + warmed
