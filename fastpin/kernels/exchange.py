@@ -53,7 +53,7 @@ UNBONDED = 8  # a node that must stick slips or opens
 UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, SETTLED, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
 # Slots of `sums`.
-TIME, DISSIPATION, WORK, SEAT_DISSIPATION, SUMS = 0, 1, 2, 3, 4
+TIME, DISSIPATION, WORK, SEAT_DISSIPATION = 0, 1, 2, 3
 
 # The row of the slip tally that only runs with wear have: pressure times slip distance.
 WEAR = 4

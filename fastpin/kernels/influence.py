@@ -25,7 +25,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from fastpin.kernels import fourier
 from fastpin.runtime.jit import compiled
@@ -430,7 +429,7 @@ def fill_cauchy(
     seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
     cauchy_columns(seen, nodes, h_left, h_right, out[:, : nodes.size])
     if uniform:
-        _copy_columns(out, np.array(-1.0), closed)
+        _copy_columns(out[np.newaxis, np.newaxis], np.array([[-1.0]]), closed)
 
 
 def _hats(theta, left, right, uniform, closed):
@@ -453,20 +452,36 @@ def _hats(theta, left, right, uniform, closed):
 def _copy_columns(out, parity, closed):
     """Fill the columns of equally spaced nodes from the columns of the hats of :func:`_hats`.
 
-    Entries depend on i - j, with a parity. `out` (..., n, n) holds matrices with given first columns. `parity` (...) is
-    1 or -1 for each matrix.
+    `out` (a, b, n, n) holds matrices with given first columns. `parity` (a, b) is 1 or -1 for each matrix.
     """
-    n = out.shape[-1]
     values = _values_by_distance(out, parity, closed)
-    parity = parity[..., np.newaxis]
-    if closed:
-        inner = out
-    else:
-        out[..., -1] = parity * out[..., ::-1, 0]
-        inner = out[..., 1:-1]
-    mirrored = np.concatenate([parity * values[..., :0:-1], values], axis=-1)
-    windows = sliding_window_view(mirrored, n, axis=-1)
-    inner[...] = windows[..., ::-1, :].swapaxes(-1, -2)
+    if not closed:
+        out[..., -1] = parity[..., np.newaxis] * out[..., ::-1, 0]
+    spread(values, parity, 0 if closed else 1, out)
+
+
+@compiled
+def spread(values, parity, ends, out):
+    """Fill matrices whose entries depend on i - j, with a parity.
+
+    Parameters
+    ----------
+    values : ndarray, shape (a, b, l)
+        Entries by the distance of two nodes. l is n on a circle, n-1 on an arc.
+    parity : ndarray, shape (a, b)
+        1 or -1 for each matrix.
+    ends : int
+        Number of columns at either end that are left as they are: half hats.
+    out : ndarray, shape (a, b, n, n), output
+    """
+    rows, columns, n, _ = out.shape
+    for a in range(rows):
+        for b in range(columns):
+            for j in range(ends, n - ends):
+                for i in range(j):
+                    out[a, b, i, j] = parity[a, b] * values[a, b, j - i]
+                for i in range(j, n):
+                    out[a, b, i, j] = values[a, b, i - j]
 
 
 def _values_by_distance(out, parity, closed):

@@ -408,3 +408,14 @@ def test_harmonics_on_the_circle():
     coarse, fine = np.array(errors(60)), np.array(errors(120))
     assert np.all(np.abs(np.log2(coarse / fine) - 2.0) < 0.05)
     assert np.all(fine < 2e-2)
+
+
+@pytest.mark.parametrize("call", [influence.spread, python(influence.spread)], ids=["compiled", "python"])
+@pytest.mark.parametrize("nodes", [6, 7])
+@pytest.mark.parametrize("ends", [0, 1])
+def test_columns_are_spread_by_the_distance_of_two_nodes(call: Callable[..., None], nodes: int, ends: int) -> None:
+    values, out = np.random.default_rng(nodes).normal(size=(2, 2, nodes)), np.full((2, 2, nodes, nodes), 7.0)
+    call(values, influence.BLOCK_PARITY, ends, out)
+    for a, b, i, j in np.ndindex(out.shape):
+        entry = values[a, b, abs(i - j)] * (influence.BLOCK_PARITY[a, b] if i < j else 1.0)
+        assert out[a, b, i, j] == (entry if ends <= j < nodes - ends else 7.0)
