@@ -532,9 +532,9 @@ class Session:
 
         Returns the run that got there.
         """
-        load = None if given is None else complete_load(given, run.load)
+        load, here = None if given is None else complete_load(given, run.load), self._here
         while True:
-            last = None if load is None else run.bookmark()
+            last = None if load is None else here.restart if run is self._run else run.bookmark()
             try:
                 run.follow() if load is None else run.step_to(load)
             except ArcError as error:

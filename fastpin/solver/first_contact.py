@@ -16,6 +16,7 @@ from fastpin.model.angles import angle_between
 from fastpin.model.loads import FRICTION_CHANGE, REMOTE, UX, UY, M, P, Q
 from fastpin.reading.zones import runs
 from fastpin.runtime.extensions import optimize
+from fastpin.solver.assembly import one_step, shearless_step
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -32,7 +33,6 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import CUT_OFF, NARROW, ArcError, NoEquilibriumError, ResolutionError
-from fastpin.solver.finite_step import one_step, shearless_step
 from fastpin.solver.interfaces import PinView, part_of, with_part
 from fastpin.solver.path import PathStep, StepLostError, follow_whole
 from fastpin.solver.rest import bend, hole_gap, place_between, put_at_rest, release, rest_position

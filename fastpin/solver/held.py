@@ -23,9 +23,8 @@ from fastpin.kernels.exchange import EVENTS, NEXT, QUEUED, REACHED, REBUILD, ROU
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
 from fastpin.solver.configuration import Configuration, Correction
-from fastpin.solver.neighbours import Neighbours
 from fastpin.solver.tableau import TableauMemory
-from fastpin.solver.unknowns import MOST_RESIDUAL, DenseUnknowns, have_toeplitz_matrix
+from fastpin.solver.unknowns import MOST_RESIDUAL, DenseUnknowns, Neighbours, have_toeplitz_matrix
 
 FEW_NODES = 512
 """Most nodes of a grid whose steps begin with a held contact. Above, columns on demand take less time."""

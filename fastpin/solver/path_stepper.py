@@ -23,7 +23,7 @@ from fastpin.solver.errors import (
     ResolutionError,
     SolveError,
 )
-from fastpin.solver.path import PathStep, StepLostError, follow_whole
+from fastpin.solver.path import PathStep, StepLostError, WholeStep, follow_whole
 from fastpin.solver.rest import release
 from fastpin.solver.snap import find_state_beyond
 from fastpin.solver.step import Piece, Position, StepReport, force_of, force_on_pin
@@ -101,14 +101,19 @@ class PathStepper:
         try:
             if self._step is None:
                 now, after = position.now, piece.after
-                system = self._steady_system(now.load, after)
-                if system is not None and stop == piece.end and self._follow_whole(system, position, after):
-                    return
+                system, later = self._under(now.load), self._under(after)
+                is_steady = system is later or np.array_equal(system.friction, later.friction)
+                if is_steady and stop == piece.end:
+                    whole = follow_whole(system, now, after, self._memory)
+                    if whole is not None:
+                        position.now = whole.now
+                        self._count(position, whole)
+                        return
                 self._begin = position.reached
-                if system is None:
-                    self._step = DriftPath(self._under(now.load), now, after, self._under(after).friction)
-                else:
+                if is_steady:
                     self._step = PathStep(system, now, after, self._memory)
+                else:
+                    self._step = DriftPath(system, now, after, later.friction)
             begin, length = self._begin, piece.end - self._begin
             part = 1.0 if stop == piece.end else (stop - begin) / length
             position.now = self._step.follow(part, lambda done: report(begin + done * length))
@@ -129,28 +134,16 @@ class PathStepper:
         """End the present path: note the nodes that it touched, count its events, and forget it."""
         if self._step is None:
             return
-        position.touched |= self._step.touched
-        self._statistics["events"] += self._step.events
-        self._statistics["exchanges"] += self._step.exchanges
+        self._count(position, self._step)
         self._statistics["rebuilds"] += self._step.rebuilds
         self._statistics["resettled"] += self._step.resettled
         self._step = None
 
-    def _follow_whole(self, system: System, position: Position, after: np.ndarray) -> bool:
-        """Follow the rest of a piece to the load `after` in one call. Returns whether that was enough."""
-        found = follow_whole(system, position.now, after, self._memory)
-        if found is None:
-            return False
-        position.now = found.now
-        position.touched |= found.touched
-        self._statistics["events"] += found.events
-        self._statistics["exchanges"] += found.exchanges
-        return True
-
-    def _steady_system(self, before: np.ndarray, after: np.ndarray) -> System | None:
-        """The system on the way between two loads (loads,); None if the friction changes on it."""
-        system, later = self._under(before), self._under(after)
-        return system if system is later or np.array_equal(system.friction, later.friction) else None
+    def _count(self, position: Position, followed: WholeStep | PathStep | DriftPath) -> None:
+        """Note the nodes and the events of a step that was followed."""
+        position.touched |= followed.touched
+        self._statistics["events"] += followed.events
+        self._statistics["exchanges"] += followed.exchanges
 
     def _under(self, load: np.ndarray) -> System:
         """The system with the friction under a load (loads,), kept for the next question."""

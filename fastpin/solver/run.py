@@ -34,7 +34,6 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, SolveError
 from fastpin.solver.first_contact import first_contact
-from fastpin.solver.outside import OutsideGap
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import follow_floating, release
 from fastpin.solver.result import Restart
@@ -50,7 +49,7 @@ from fastpin.solver.step import (
     pieces,
     presses,
 )
-from fastpin.solver.window import stepper_of
+from fastpin.solver.window import OutsideGap, stepper_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 

@@ -7,7 +7,7 @@ from fastpin.elasticity.system import System
 from fastpin.model.grid import Grid
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.solver.neighbours import Neighbours, TurnedNeighbours
+from fastpin.solver.unknowns import Neighbours, TurnedNeighbours
 from tests.support.laminates import RIGID, STEEL, TURNED
 
 PLATES = {"isotropic": Material(70e9, 0.33), "laminate": TURNED}
