@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,7 @@ from fastpin.model.profile import widest_place
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     NODAL,
+    SLIGHT,
     Configuration,
     accept_solution,
     elastic_energy,
@@ -147,9 +147,6 @@ def _corrected(system: System, start: Configuration, found: Configuration) -> Co
     return accept_solution(start, whole, found.load)
 
 
-UNPRESSED = 1e-9
-"""Largest pressure, in parts of the peak, of a node that counts as open in the first contact. It must not stick."""
-
 COARSER = 0.8
 """Nodes in parts of those on which no first contact was found, with which it is looked for once more."""
 
@@ -172,7 +169,7 @@ def one_step(
         return found
     smooth = shearless_step(system, resting, load)
     if smooth is not None:
-        start = replace(resting, status=smooth.status)
+        start = resting.changed(status=smooth.status)
         found = implicit_step(system, start, load) or FiniteStep(system, start, everywhere).to(load)
     return found if is_right(found) else _refined(system, resting, load)
 
@@ -188,12 +185,12 @@ def _refined(system: System, resting: Configuration, load: np.ndarray) -> Config
     coarse = System.build(system.problem, Grid.circle(count, float(theta[0])), system.scales.force)
     distances = np.abs(angle_between(theta[:, None], coarse.grid.theta))
     to, back = distances.argmin(axis=0), distances.argmin(axis=1)
-    begun = replace(unloaded_configuration(coarse), status=resting.status[to])
+    begun = unloaded_configuration(coarse).changed(status=resting.status[to])
     put_at_rest(coarse, begun, resting.load, resting.rest, resting.rest_gap[to])
     found = one_step(coarse, begun, load, everywhere=True)
     if found is None or worst_residual(coarse, found) > MAX_RESIDUAL:
         return None
-    return implicit_step(system, replace(resting, status=found.status[back]), load)
+    return implicit_step(system, resting.changed(status=found.status[back]), load)
 
 
 def shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
@@ -204,7 +201,7 @@ def shearless_step(system: System, resting: Configuration, load: np.ndarray) -> 
         held_load[ROTATION] = resting.motion[TURN]
     found = one_step(smooth, start, held_load)
     if found is not None:
-        pressed = found.pressure > UNPRESSED * found.pressure.max()
+        pressed = found.pressure > SLIGHT * found.pressure.max()  # others count as open: they must not stick
         found.status[:] = np.where(found.closed & pressed, resting_status(system), OPEN)
         found.load = load
     return found

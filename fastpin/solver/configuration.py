@@ -19,8 +19,11 @@ from fastpin.solver.unknowns import SINGULAR, DenseUnknowns
 MAX_RESIDUAL = 1e-9
 """Largest relative violation of the contact conditions in a returned state."""
 
-ROUNDED_MOMENT = 1e-12
-"""Moment that holds a pin, in parts of that of the absolute shear, which is rounding: its contact is symmetric."""
+SLIGHT = 1e-9
+"""Part of the largest pressure, gap, displacement or force that counts as nothing: no more is left in a state."""
+
+ROUNDED = 1e-12
+"""Part of the largest traction, moment or load that is rounding."""
 
 
 NODAL = ("pressure", "shear", "gap", "slip", "status", "rest_gap", "rest_slip")
@@ -412,7 +415,7 @@ def moment_that_holds(system: System, configuration: Configuration) -> float:
     nodes = system.interfaces[0].nodes
     levers, shear = system.levers[nodes], configuration.shear[nodes]
     moment = -float(levers @ shear)
-    return moment if abs(moment) > ROUNDED_MOMENT * float(levers @ np.abs(shear)) else 0.0
+    return moment if abs(moment) > ROUNDED * float(levers @ np.abs(shear)) else 0.0
 
 
 def contact_residuals(system: System, configuration: Configuration, elastic: np.ndarray) -> dict[str, float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +18,7 @@ from fastpin.runtime.extensions import optimize
 from fastpin.solver.assembly import one_step, shearless_step
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
+    SLIGHT,
     Configuration,
     accept_solution,
     dissipation_between,
@@ -57,9 +57,6 @@ BESIDE_END = 3
 
 GROWN_FIT = np.arange(4, 7)
 """Distances, in nodes from the first node, of the nodes whose slip tells the slip of the nodes between."""
-
-CONFORMING = 1e-9
-"""Largest differences of the gap round a pin that touches all round, in parts of the clearance."""
 
 CONFORMING_PART = 1e-3
 """Part of a step at which the first contact of such a pin is tried."""
@@ -174,7 +171,7 @@ def at_rest(
 
 def _rounding(system: System) -> float:
     """The largest difference of the gap round a pin that touches all round."""
-    return CONFORMING * float(np.abs(system.concentric_gap).max())
+    return SLIGHT * float(np.abs(system.concentric_gap).max())
 
 
 def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
@@ -249,7 +246,7 @@ def _first_contact_of_joint(
     joint: JointSystem, floating: Configuration, before: np.ndarray, after: np.ndarray, strict: bool, has_slip: bool
 ) -> tuple[Configuration, float]:
     """The first contact of a pin in a bush: a loose bush comes to rest first, then the pin in the bent bush."""
-    floating, begins, beginning = replace(floating, load=before), 0.0, None
+    floating, begins, beginning = floating.changed(load=before), 0.0, None
     if not floating.closed[joint.interfaces[SEAT].nodes].any():
         beginning, alone = floating, joint.alone[SEAT]
         most = 1.0 if alone.concentric_gap.any() else CONFORMING_PART  # a neat one touches all round
@@ -267,7 +264,7 @@ def _first_contact_of_joint(
             raise
         return both
     if begins > part:  # the wider of two first contacts gives the load of both
-        pin, part = replace(pin, load=seat.load), begins
+        pin, part = pin.changed(load=seat.load), begins
     return view.whole(pin), part
 
 
@@ -437,8 +434,8 @@ def _begun(
         return found
     dissipated = dissipation_between(system, resting, found)
     if begin is None:
-        begun = slip_tally_with(replace(resting, status=found.status))  # its nodes slip from there on
-        found.slip_tally = slip_tally_between(replace(resting, slip_tally=begun), found)
+        begun = slip_tally_with(resting.changed(status=found.status))  # its nodes slip from there on
+        found.slip_tally = slip_tally_between(resting.changed(slip_tally=begun), found)
     elif has_slip and system.has_friction:
         found = _with_grown_slip(system, found, begin) or found
     found.dissipation += dissipated
@@ -468,7 +465,7 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
     nodes = _young_nodes(system, patch)
     young, small = (system, patch) if nodes is None else (system.part(nodes), patch.part(nodes))
     slip = _grown_slip(young, small, begin)
-    step = None if slip is None else one_step(young, replace(small, slip=slip), patch.load)
+    step = None if slip is None else one_step(young, small.changed(slip=slip), patch.load)
     if step is None or nodes is None:
         return step if step is None or worst_residual(system, step) <= MAX_RESIDUAL else None
     status, held = np.full(system.grid.size, OPEN, dtype=np.int8), patch.slip.copy()
@@ -476,7 +473,7 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
     solution = solve_statuses(system, status, held, patch.load, patch.rest_gap)
     if solution is None:
         return None
-    found = accept_solution(replace(patch, slip=held), solution, patch.load)
+    found = accept_solution(patch.changed(slip=held), solution, patch.load)
     return found if worst_residual(system, found) <= MAX_RESIDUAL else None
 
 

@@ -58,23 +58,25 @@ class HeldContacts:
         self._lock = threading.Lock()
 
     @classmethod
-    def of(cls, system: System) -> HeldContacts:
-        """The held contacts of a system. They are kept as long as the system is, and shared where only loads differ."""
-        system = system.held_as or system
-        return cls._of_systems.get(system) or cls._of_systems.setdefault(system, cls())
+    def table(cls, system: System, closed: np.ndarray) -> HeldTable | None:
+        """The table of the `closed` nodes (n,) of a system, kept as long as the system is.
 
-    def table(self, system: System, closed: np.ndarray) -> HeldTable | None:
-        """The table of the `closed` nodes (n,); None if it has too few digits."""
-        key = closed.tobytes()
-        with self._lock:
-            if key in self._tables:
-                self._tables.move_to_end(key)
-                return self._tables[key]
+        Systems that differ in loads only share their tables. None if steps on the system do not begin with a held
+        contact: on many nodes and without friction; or if the table has too few digits.
+        """
+        if system.grid.size > FEW_NODES or not system.has_friction or system.operator.matrix is None:
+            return None
+        owner, key = system.held_as or system, closed.tobytes()
+        known = cls._of_systems.get(owner) or cls._of_systems.setdefault(owner, cls())
+        with known._lock:
+            if key in known._tables:
+                known._tables.move_to_end(key)
+                return known._tables[key]
         table = held_table(system, closed)
-        with self._lock:
-            self._tables[key] = table
-            while len(self._tables) > max(1, MOST_NUMBERS // (4 * closed.size * closed.size)):
-                self._tables.popitem(last=False)
+        with known._lock:
+            known._tables[key] = table
+            while len(known._tables) > max(1, MOST_NUMBERS // (4 * closed.size * closed.size)):
+                known._tables.popitem(last=False)
         return table
 
 
@@ -96,11 +98,6 @@ class HeldTable(NamedTuple):
     matrix: np.ndarray
     stack: np.ndarray
     order: np.ndarray
-
-
-def begins_held(system: System) -> bool:
-    """Whether steps on a system begin with a held contact."""
-    return system.grid.size <= FEW_NODES and system.has_friction and system.operator.matrix is not None
 
 
 def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
@@ -279,7 +276,7 @@ class HeldColumns:
                 queue.counts[[QUEUED, NEXT, ROUND]] = 0
             if code != REBUILD or is_stuck:
                 return int(code)
-            table, before = HeldContacts.of(system).table(system, contact.status != OPEN), contact.status.copy()
+            table, before = HeldContacts.table(system, contact.status != OPEN), contact.status.copy()
             if table is None:
                 return int(code)
             queue.counts[[UPDATES, QUEUED, NEXT, ROUND]] = 0

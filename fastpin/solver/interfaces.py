@@ -22,6 +22,7 @@ from fastpin.solver.configuration import (
     MARKS,
     MAX_RESIDUAL,
     NODAL,
+    ROUNDED,
     Configuration,
     accept_solution,
     add_dissipation,
@@ -35,9 +36,6 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.settling import FiniteStep
 from fastpin.solver.unknowns import DenseUnknowns
-
-ROUND = 1e-12
-"""Rounding: of a bore's shape, in parts of the largest traction in the seat; of a pressure, in parts of the peak."""
 
 
 class PinView:
@@ -67,7 +65,7 @@ class PinView:
         angles, bore = joint.bore_shape
         shape = bore @ residual
         mean = float(shape.mean())
-        is_round = float(np.abs(shape - mean).max()) <= ROUND * float(np.abs(residual).max(initial=0.0))
+        is_round = float(np.abs(shape - mean).max()) <= ROUNDED * float(np.abs(residual).max(initial=0.0))
         profile = pin.problem.gap
         if not is_round:
             around = np.r_[angles, angles[0] + 2.0 * np.pi], unit * (np.r_[shape, shape[0]] - mean)
@@ -123,8 +121,8 @@ class PinView:
         part = part_of(self._joint, self._now, PIN)
         motion = part.motion.copy()
         motion[TURN] += self._turned
-        return replace(
-            part, motion=motion, slip=part.slip - self._slip, rest_gap=part.rest_gap + self._gap,
+        return part.changed(
+            motion=motion, slip=part.slip - self._slip, rest_gap=part.rest_gap + self._gap,
             rest_slip=part.rest_slip - self._slip,
         )  # fmt: skip
 
@@ -143,8 +141,8 @@ class PinView:
         joint, now = self._joint, self._now
         motion = pin.motion.copy()
         motion[TURN] -= self._turned
-        part = replace(
-            pin, motion=motion, slip=pin.slip + self._slip, rest_gap=pin.rest_gap - self._gap,
+        part = pin.changed(
+            motion=motion, slip=pin.slip + self._slip, rest_gap=pin.rest_gap - self._gap,
             rest_slip=pin.rest_slip + self._slip,
         )  # fmt: skip
         start = with_part(joint, now, PIN, part)
@@ -176,7 +174,7 @@ class PinView:
             add_dissipation(seat, own, found)
         turned = _turned_freely(self._joint, start)
         motion = found.motion + np.array([0.0, 0.0, turned])
-        found = replace(found, load=start.load, motion=motion, slip=found.slip + seat.radius * turned)
+        found = found.changed(load=start.load, motion=motion, slip=found.slip + seat.radius * turned)
         return with_part(self._joint, start, SEAT, found)
 
 
@@ -199,8 +197,8 @@ def part_of(joint: JointSystem, configuration: Configuration, place: int) -> Con
     """The contact of the interface `place`, of a configuration of all interfaces."""
     own, at = joint.interfaces[place], slice(2 * place, 2 * place + 2)
     part = configuration.part(np.arange(joint.grid.size)[own.nodes])
-    return replace(
-        part, motion=configuration.motion[own.motion : own.motion + 3], rest=configuration.rest[at],
+    return part.changed(
+        motion=configuration.motion[own.motion : own.motion + 3], rest=configuration.rest[at],
         origin=configuration.origin[at], marks=getattr(configuration, MARKS[place]),
     )  # fmt: skip
 
@@ -219,8 +217,8 @@ def with_part(joint: JointSystem, configuration: Configuration, place: int, part
         setattr(whole, name, values)
     lost = part.dissipation - whole.dissipation if place == SEAT else 0.0
     tally = whole.slip_tally.with_part(np.arange(joint.grid.size)[own.nodes], part.slip_tally)
-    return replace(
-        whole, load=part.load.copy(), dissipation=part.dissipation, work=part.work, slip_tally=tally,
+    return whole.changed(
+        load=part.load.copy(), dissipation=part.dissipation, work=part.work, slip_tally=tally,
         seat_dissipation=whole.seat_dissipation + lost,
     )  # fmt: skip
 
@@ -269,7 +267,7 @@ def _begun_together(joint: JointSystem, start: Configuration) -> Configuration |
         found.motion[each.motion + TURN] = turned
         found.slip[each.nodes] += each.radius * turned
         pressure = found.pressure[each.nodes]
-        pressed = found.closed[each.nodes] & (pressure > ROUND * pressure.max())
+        pressed = found.closed[each.nodes] & (pressure > ROUNDED * pressure.max())
         found.status[each.nodes] = np.where(pressed, resting_status(joint)[each.nodes], OPEN)
     return found if worst_residual(joint, found) <= MAX_RESIDUAL else None
 
@@ -302,10 +300,10 @@ def _with_followed_seat(joint: JointSystem, start: Configuration) -> Configurati
     own = part_of(joint, start, SEAT)
     begin, end = np.r_[without_force(start.load), 0.0], np.r_[start.load, 1.0]
     try:
-        followed = PathStep(grown, replace(own, load=begin), end).follow(1.0)
+        followed = PathStep(grown, own.changed(load=begin), end).follow(1.0)
     except StepLostError:
         return None
-    return with_part(joint, start, SEAT, replace(followed, load=start.load, work=start.work))
+    return with_part(joint, start, SEAT, followed.changed(load=start.load, work=start.work))
 
 
 def _moved_bore(bodies: BodyTerms | None, columns: np.ndarray) -> BodyTerms | None:

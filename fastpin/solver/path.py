@@ -21,7 +21,7 @@ from fastpin.kernels.arrays import Contact, ContactValues, LoadTerms, Queue
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import P, Q
 from fastpin.solver.configuration import Configuration, Correction, snap_to_bounds, solve_unknowns
-from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts, begins_held
+from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts
 from fastpin.solver.settling import settle
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
@@ -233,7 +233,7 @@ class PathStep:
         Returns False if the held nodes can't hold the pin, or without friction.
         """
         status = self.now.status
-        table = HeldContacts.of(self.system).table(self.system, self.now.closed) if begins_held(self.system) else None
+        table = HeldContacts.table(self.system, self.now.closed)
         if table is None:
             return False
         contact, rest_gap = self._contact, self.now.rest_gap
@@ -420,7 +420,7 @@ def follow_whole(system: System, start: Configuration, after: np.ndarray, memory
     same calls, so a step has the same bits either way. The `memory` is overwritten.
     """
     n = start.status.size
-    table = HeldContacts.of(system).table(system, start.closed) if begins_held(system) else None
+    table = HeldContacts.table(system, start.closed)
     if table is None:
         return None
     now, rate = start.copy(), after - start.load

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -11,21 +10,16 @@ from fastpin.elasticity.interfaces import PIN, SEAT, TURN, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import ACTING, REMOTE, ROTATION, SXX, SXY, SYY, THERMAL
+from fastpin.model.problem import LOOKED_AT
 from fastpin.model.profile import widest_place
 from fastpin.runtime.extensions import optimize
-from fastpin.solver.configuration import Configuration, elastic_energy
+from fastpin.solver.configuration import SLIGHT, Configuration, elastic_energy
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.interfaces import PinView, part_of, with_part, without_force
 from fastpin.solver.path import PathStep, StepLostError
 
 SHAPING = [SXX, SYY, SXY, *THERMAL]
 """Loads that change the shape of the hole."""
-
-FINE = 1441
-"""Angles round the hole at which a gap that varies is looked at."""
-
-TOUCHING = 1e-9
-"""Largest overlap of a resting pin and the hole, in parts of the largest gap."""
 
 LEAST_BEND = 1e-4
 """Angle beside a place, rad, at least, over which a gap is bent: rounding is 1e-8 of the gap there."""
@@ -83,10 +77,10 @@ def _release_pin(joint: JointSystem, last: Configuration, load: np.ndarray) -> C
     if joint.problem.held:  # over the lug: the pin turns back in the bush by as much as the bush has turned
         turned = load[ROTATION] - seat.motion[TURN] - pin.motion[TURN]
         motion = pin.motion + np.array([0.0, 0.0, turned])
-        pin = replace(pin, motion=motion, slip=pin.slip + turned, rest_slip=pin.rest_slip + turned)
+        pin = pin.changed(motion=motion, slip=pin.slip + turned, rest_slip=pin.rest_slip + turned)
     found = with_part(joint, with_part(joint, last, PIN, pin), SEAT, seat)
-    return replace(
-        found, dissipation=last.dissipation, seat_dissipation=last.seat_dissipation,
+    return found.changed(
+        dissipation=last.dissipation, seat_dissipation=last.seat_dissipation,
         work=last.work - elastic_energy(joint, last),
     )  # fmt: skip
 
@@ -100,9 +94,9 @@ def follow_floating(joint: JointSystem, now: Configuration, load: np.ndarray) ->
         If nothing holds the bush, or if the lug closes on a loose one.
     """
     own = part_of(joint, now, SEAT)
-    start = replace(own, load=without_force(own.load))
+    start = own.changed(load=without_force(own.load))
     if not joint.is_pressed:
-        found, theta = release(joint, now, load), np.linspace(-math.pi, math.pi, FINE)
+        found, theta = release(joint, now, load), np.linspace(-math.pi, math.pi, LOOKED_AT)
         if widest_place(theta, hole_gap(joint.alone[SEAT], load, theta)[0], (False, False))[0] < 0.0:
             raise NoEquilibriumError("the remote stress closes the hole of the plate on a loose bush")
         return found
@@ -112,7 +106,7 @@ def follow_floating(joint: JointSystem, now: Configuration, load: np.ndarray) ->
         seat = start
         if not np.array_equal(start.load, load):
             seat = PathStep(joint.alone[SEAT], start, load).follow(part)
-        view = PinView(joint, with_part(joint, now, SEAT, replace(seat, load=reached)))
+        view = PinView(joint, with_part(joint, now, SEAT, seat.changed(load=reached)))
         return view.whole(release(view.system, view.pin, reached))
 
     try:
@@ -128,7 +122,7 @@ def follow_floating(joint: JointSystem, now: Configuration, load: np.ndarray) ->
 
 def _room(joint: JointSystem, floating: Configuration) -> float:
     """The narrowest gap round a floating pin where it has most room; negative where the bore grips it."""
-    system, theta = PinView(joint, floating).system, np.linspace(-math.pi, math.pi, FINE)
+    system, theta = PinView(joint, floating).system, np.linspace(-math.pi, math.pi, LOOKED_AT)
     return widest_place(theta, hole_gap(system, floating.load, theta)[0], (False, False))[0]
 
 
@@ -192,7 +186,7 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
     gap, slope, _ = hole_gap(system, load, angle)
     has_gap = bool(system.problem.gap)
     is_round = system.bodies is None and not has_gap and not load[list(REMOTE)].any()  # the gap is the same everywhere
-    fine = np.linspace(-math.pi, math.pi, 1 if is_round else FINE)
+    fine = np.linspace(-math.pi, math.pi, 1 if is_round else LOOKED_AT)
     if has_gap:
         fine = np.unique(np.r_[fine, system.problem.gap_angles])
     values, _, curvature = hole_gap(system, load, fine)
@@ -202,7 +196,7 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
     touches = np.all(values + curvature >= 0.0)  # the pin touches at one point, with its normal at `angle`
     if has_gap and not touches:
         left = values - position[0] * np.cos(fine) - position[1] * np.sin(fine)
-        touches = left.min() >= -TOUCHING * np.abs(values).max()
+        touches = left.min() >= -SLIGHT * np.abs(values).max()
     if touches:
         half, moved = 0.5 * (system.grid.theta - angle), system.drive.translation[: system.grid.size] @ shift
         rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + moved
@@ -236,7 +230,7 @@ def _looked_at(system: System) -> np.ndarray:
     theta = system.grid.theta
     if system.grid.closed:
         return theta
-    return np.r_[theta, np.linspace(theta[-1], theta[0] + 2.0 * math.pi, FINE)[1:-1]]
+    return np.r_[theta, np.linspace(theta[-1], theta[0] + 2.0 * math.pi, LOOKED_AT)[1:-1]]
 
 
 def _on_two_places(system: System, load: np.ndarray, angles: np.ndarray, position: np.ndarray) -> np.ndarray:
@@ -248,12 +242,12 @@ def _on_two_places(system: System, load: np.ndarray, angles: np.ndarray, positio
     for _ in range(REFINEMENTS):
         gap, slope, curvature = hole_gap(system, load, angles)
         across = np.column_stack([np.cos(angles), np.sin(angles)])
-        if angles.size != 2 or abs(np.linalg.det(across)) < TOUCHING:
+        if angles.size != 2 or abs(np.linalg.det(across)) < SLIGHT:
             return position
         found = np.linalg.solve(across, gap)
         slope = slope - np.column_stack([-across[:, 1], across[:, 0]]) @ found
         curvature = curvature + across @ found
-        spacing = 2.0 * math.pi / (FINE - 1)
+        spacing = 2.0 * math.pi / (LOOKED_AT - 1)
         smooth = curvature > 0.0
         angles = angles - np.where(smooth, np.clip(slope / np.where(smooth, curvature, 1.0), -spacing, spacing), 0.0)
     return found

@@ -22,6 +22,7 @@ from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import (
     MARKS,
     MAX_RESIDUAL,
+    SLIGHT,
     Configuration,
     contact_residuals,
     elastic_energy,
@@ -60,9 +61,6 @@ RunProgress = Callable[[float, int], None]
 
 COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated", "resettled", "jumps", "released")
 """Counts in the statistics of a run."""
-
-UNLOADED_PRESSURE = 1e-9
-"""Largest pressure of a pin after a complete unloading, in parts of the force before (dimensionless)."""
 
 LAST_PART = 1e-7
 """Last part of a piece in which the contact of a nearly neat fit vanishes. Its tractions are rounding there."""
@@ -376,7 +374,7 @@ class Run:
         left, before = float(self.now.pressure[pin].max()), force_of(piece.before)
         if self.system.drive.has_displacements:  # the forces of the nodes hold the rounding of a large displacement
             left, before = float(self.system.weights @ self.now.pressure), 1.0
-        if left <= UNLOADED_PRESSURE * before:
+        if left <= SLIGHT * before:
             self._release(load)
 
     def _release(self, load: np.ndarray) -> None:

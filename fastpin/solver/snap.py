@@ -15,6 +15,7 @@ import numpy as np
 from fastpin.elasticity.system import System
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
+    SLIGHT,
     Configuration,
     add_dissipation,
     reaches_end,
@@ -34,9 +35,6 @@ SOFTER, STIFFER = 0.6, 3.0
 
 STIFFEST = 1e4
 """Largest stiffness of the springs, in parts of the first one."""
-
-SPINNING = 1e-9
-"""Largest translation of a pin that spins, in parts of its rotation times the radius."""
 
 
 def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> Configuration | None:
@@ -94,7 +92,7 @@ def _spins(system: System, before: Configuration, after: Configuration) -> bool:
         x, y, turned = np.abs(after.motion - before.motion)[rim.motion : rim.motion + 3]
         closed = before.closed[rim.nodes]
         one_way = np.abs(before.status[rim.nodes][closed].sum()) == np.count_nonzero(closed)
-        if one_way and max(x, y) <= SPINNING * turned:
+        if one_way and max(x, y) <= SLIGHT * turned:
             return True
     return False
 
@@ -122,8 +120,7 @@ def _step_on_springs(
     n = system.grid.size
     before = np.where(stiffness > 0.0, start.motion, 0.0)
     moved = system.motion @ before
-    shifted = replace(
-        start,
+    shifted = start.changed(
         motion=start.motion - before,
         rest_gap=start.rest_gap + moved[:n],
         slip=start.slip - moved[n:],
@@ -133,5 +130,5 @@ def _step_on_springs(
     after = _step(held, shifted, load)
     if after is None:
         return None
-    after = replace(after, rest_gap=start.rest_gap, rest_slip=start.rest_slip)
-    return replace(after, motion=after.motion + before, slip=after.slip + moved[n:])
+    after = after.changed(rest_gap=start.rest_gap, rest_slip=start.rest_slip)
+    return after.changed(motion=after.motion + before, slip=after.slip + moved[n:])

@@ -17,7 +17,7 @@ from fastpin.kernels.status import STICK
 from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION, THERMAL, UX, UY, M, P, Q
 from fastpin.model.problem import Problem
 from fastpin.reading.zones import runs
-from fastpin.solver.configuration import Configuration
+from fastpin.solver.configuration import ROUNDED, Configuration
 from fastpin.solver.errors import OPENED, NoEquilibriumError, ResolutionError
 
 StepReport = Callable[[float], None]
@@ -26,9 +26,6 @@ StepReport = Callable[[float], None]
 
 SCALING = [P, Q, M, *REMOTE, UX, UY, *THERMAL]
 """Loads with which the contact of a neat fit scales. A rotation or a change of friction presses nothing."""
-
-OPPOSITE = 1e-12
-"""Difference of two directions that is rounding of the loads at two corners."""
 
 LEAST_CLOSED = 3
 """Nodes of a contact at a corner, at least. With fewer the pressure is anything."""
@@ -71,7 +68,7 @@ def pieces(before: np.ndarray, after: np.ndarray, nearly_neat: bool) -> list[Pie
     for loads in (SCALING, together, [P, Q]) if nearly_neat else (together, [P, Q]):
         first, last = before[loads], after[loads]
         size = first @ last
-        if size < 0.0 and np.abs(np.outer(first, last) - np.outer(last, first)).max() <= OPPOSITE * abs(size):
+        if size < 0.0 and np.abs(np.outer(first, last) - np.outer(last, first)).max() <= ROUNDED * abs(size):
             cut = float(np.linalg.norm(first) / (np.linalg.norm(first) + np.linalg.norm(last)))
             middle = before + cut * (after - before)
             middle[loads] = 0.0

@@ -18,7 +18,7 @@ from fastpin.model.grid import LEAST_NODES, Grid
 from fastpin.model.loads import REMOTE
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.solver.configuration import Configuration, embedded
+from fastpin.solver.configuration import SLIGHT, Configuration, embedded
 from fastpin.solver.errors import ArcError, ResolutionError
 from fastpin.solver.increment_stepper import IncrementStepper
 from fastpin.solver.interfaces import part_of
@@ -31,9 +31,6 @@ MARGIN = 48
 
 WIDEST = 4000
 """Nodes of a window, at most."""
-
-PENETRATION = 1e-9
-"""Largest penetration of nodes outside the window, in parts of the largest displacement."""
 
 
 class SecondPlaceError(Exception):
@@ -86,7 +83,7 @@ class Window:
             true = self._large.displacement(np.zeros_like(true), whole.motion, whole.load, whole.rest_gap)
         gap = true[: self._large.grid.size].copy()
         gap[self.nodes] = 0.0
-        if gap.min() < -PENETRATION * float(np.abs(true).max()):
+        if gap.min() < -SLIGHT * float(np.abs(true).max()):
             raise SecondPlaceError(gap < 0.0)
         return whole
 
@@ -247,7 +244,7 @@ class OutsideGap:
         if known is None or known[0] is not now.rest_gap or known[1] is not system.problem:
             known = self._rest = now.rest_gap, system.problem, rest_gap_at(system, now, self._theta)
         lowest = float((elastic + moved + known[2]).min())
-        return lowest < 0.0 and lowest < -PENETRATION * float(max(np.abs(elastic).max(), np.abs(moved).max()))
+        return lowest < 0.0 and lowest < -SLIGHT * float(max(np.abs(elastic).max(), np.abs(moved).max()))
 
 
 def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.ndarray:

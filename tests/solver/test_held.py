@@ -180,7 +180,7 @@ def test_corrections_of_a_held_contact_are_those_of_whole_arrays(titanium_in_alu
 def test_nodes_that_hardly_hold_the_pin_have_no_table(titanium_in_aluminium):
     system = system_of(titanium_in_aluminium)
     assert held_table(system, zones()) is None
-    assert HeldContacts.of(system).table(system, zones((30, 31))) is None  # one node: the pin turns about it
+    assert HeldContacts.table(system, zones((30, 31))) is None  # one node: the pin turns about it
 
 
 def test_nodes_that_leave_a_motion_free_have_no_table(titanium_in_aluminium):
