@@ -177,7 +177,8 @@ def edge_body(problem: Problem, body: str) -> str:
 
 def elastic_bodies(problem: Problem) -> tuple[Body, ...]:
     """The bodies of a problem that have a stress: all that are not rigid."""
-    return tuple(body for body in bodies_of(problem) if not material_of(problem, body).is_rigid)
+    materials, owners = problem.joint.materials, problem.joint.owners
+    return tuple(body for body, owner in owners.items() if not materials[owner].is_rigid)  # type: ignore[misc]
 
 
 CRITERION = "a criterion of fatigue"

@@ -120,16 +120,15 @@ def inner(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def argument_types(values: tuple[Any, ...]) -> tuple[Any, ...]:
     """The dispatch key of the argument types. :class:`KeyError` if a type is neither array nor number."""
-    return tuple(
-        [
-            (value.dtype, value.ndim, value.flags.num & LAYOUT)
-            if type(value) is ndarray
-            else (type(value), argument_types(value))
-            if isinstance(value, tuple)
-            else SCALARS[type(value)]
-            for value in values
-        ]
-    )
+    found: list[Any] = []
+    for value in values:
+        if type(value) is ndarray:
+            found.append((value.dtype, value.ndim, value.flags.num & LAYOUT))
+        elif isinstance(value, tuple):
+            found.append((type(value), argument_types(value)))
+        else:
+            found.append(SCALARS[type(value)])
+    return tuple(found)
 
 
 def signature(types: tuple[Any, ...]) -> str:

@@ -35,7 +35,7 @@ from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import CUT_OFF, NARROW, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.interfaces import PinView, part_of, with_part
 from fastpin.solver.path import PathStep, StepLostError, follow_whole
-from fastpin.solver.rest import bend, hole_gap, place_between, put_at_rest, release, rest_position
+from fastpin.solver.rest import SHAPING, bend, hole_gap, place_between, put_at_rest, release, rest_position
 from fastpin.solver.step import is_pushed, presses
 from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.window import SecondPlaceError, Window
@@ -560,6 +560,8 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
 
 def _steady_part(system: System, resting: Configuration, change: np.ndarray) -> float:
     """The part of a change of the load during which the hole keeps its shape, by :data:`STEADY` of its bend."""
+    if system.bodies is None and not change[SHAPING].any():
+        return 1.0
     theta = system.grid.theta
     gap, _, curvature = hole_gap(system, resting.load, theta)
     later, _, bent = hole_gap(system, resting.load + change, theta)

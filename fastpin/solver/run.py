@@ -465,7 +465,7 @@ class Run:
         left = unbalanced(system, now)
         if not left <= MAX_RESIDUAL:
             raise ConvergenceError(f"the state leaves a body out of equilibrium (by {left:.2g}) and is not returned")
-        if not all(residual <= MAX_RESIDUAL for residual in residuals.values()):
+        if not np.maximum.reduce([*residuals.values()]) <= MAX_RESIDUAL:
             worst = max(residuals, key=lambda name: residuals[name])
             raise ConvergenceError(
                 f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"

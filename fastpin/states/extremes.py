@@ -203,7 +203,7 @@ def yield_extremes(kept: Kept) -> Found:
         tractions = [part for each in (block, block.seat or block) for part in (each.pressure, each.shear)]
         remote = np.abs(block.loads[:, list(REMOTE)])
         columns.append(np.column_stack([remote, *(np.abs(part).max(axis=1) for part in tractions)]))
-    if not columns or _are_plainly_elastic(kept.problem, np.concatenate(columns).max(axis=0)):
+    if not columns or _are_plainly_elastic(kept.problem, min(owners.values()), np.concatenate(columns).max(axis=0)):
         return Found()  # also if the run was stopped before its first state
     places = {int(np.argmax(column)) for column in np.concatenate(columns).T if column.any()}
     states = kept.read(sorted(places))
@@ -211,12 +211,13 @@ def yield_extremes(kept: Kept) -> Found:
     return find_extremes(kept, [(PREFIX + owner, "largest") for owner in near])
 
 
-def _are_plainly_elastic(problem: Problem, most: np.ndarray) -> bool:
+def _are_plainly_elastic(problem: Problem, least: float, most: np.ndarray) -> bool:
     """Whether the largest stresses on a solid pin and an infinite plate tell that both are far from yield.
 
-    `most` (7,) has the remote stresses (sxx, syy, sxy), and pressure and shear at the pin and in the seat.
+    `least` is the least yield strength, Pa. `most` (7,) has the remote stresses (sxx, syy, sxy), and pressure and shear
+    at the pin and in the seat.
     """
-    plate, least = problem.plate_body, min(yielding_owners(problem).values())
+    plate = problem.plate_body
     is_plain = plate.is_infinite and not (plate.bush or plate.force_points or problem.pin_body.bore_radius)
     is_plain = is_plain and problem.pair.plate.is_isotropic
     # Von Mises stresses were up to 2.1 times this sum in 410 random states, and are 3 times the stress at an open hole.

@@ -14,7 +14,7 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom
 from fastpin.model.grid import Grid
-from fastpin.model.points import Body, Points, elastic_bodies, known_depth, material_of, near_rim, owner_of
+from fastpin.model.points import Body, Points, elastic_bodies, known_depth, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.ties import top_angle
 from fastpin.model.units import units
@@ -156,9 +156,13 @@ def yielding_owners(problem: Problem) -> dict[str, float]:
 
     Stresses without dimensions have none.
     """
-    bodies = () if problem.dimensionless else elastic_bodies(problem)
-    strengths = ((owner_of(problem, body), material_of(problem, body).known_yield_strength) for body in bodies)
-    return {owner: strength for owner, strength in strengths if strength is not None}
+    found = {}
+    for body in () if problem.dimensionless else elastic_bodies(problem):
+        owner = problem.joint.owners[body]
+        strength = problem.joint.materials[owner].known_yield_strength
+        if strength is not None:
+            found[owner] = strength
+    return found
 
 
 def place_words(problem: Problem, peak: MisesPeak) -> str:
