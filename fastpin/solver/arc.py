@@ -87,13 +87,7 @@ def candidate_grids(
     nodes : int
     progress : callable, optional
         Called during the coarse runs, which come before the first grid.
-
-    Raises
-    ------
-    InputError
-        If the number of nodes is out of range.
     """
-    Grid.circle(nodes)  # checks the number of nodes before anything is computed
     arc = None if problem.needs_circle else _touched_arc(problem, values, force, nodes, progress)
     while arc is not None and arc[1] - arc[0] < WHOLE:
         shift = _shift_to_node(problem, arc[0], (arc[1] - arc[0]) / (nodes - 1), values)

@@ -186,10 +186,10 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
     gap, slope, _ = hole_gap(system, load, angle)
     has_gap = bool(system.problem.gap)
     is_round = system.bodies is None and not has_gap and not load[list(REMOTE)].any()  # the gap is the same everywhere
-    fine = np.linspace(-math.pi, math.pi, 1 if is_round else LOOKED_AT)
+    fine = np.linspace(-math.pi, math.pi, LOOKED_AT) if not is_round else np.array([-math.pi])
     if has_gap:
         fine = np.unique(np.r_[fine, system.problem.gap_angles])
-    values, _, curvature = hole_gap(system, load, fine)
+    values, curvature = hole_gap(system, load, fine)[[0, 2]] if not is_round else (gap, 0.0)
     widened = gap - system.rest_clearance
     shift = np.array([widened * cos - slope * sin, widened * sin + slope * cos])
     position = system.rest_clearance * np.array([cos, sin]) + shift

@@ -13,7 +13,7 @@ from fastpin.elasticity.interfaces import JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
+from fastpin.model.history import CycleKey, LoadHistory
 from fastpin.model.loads import FRICTION_CHANGE, LOADS, M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.read_only import ReadOnlyDict
@@ -35,7 +35,7 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, SolveError
 from fastpin.solver.first_contact import first_contact
-from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
+from fastpin.solver.repeats import CornerEntry, CornerLog, CycleEnd, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import follow_floating, release
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
@@ -258,18 +258,16 @@ class Run:
 
         The remembered configurations are shared. So it does not hold for a history with cycles.
         """
-        return Restart(
-            self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
-            Repeats(list(self.repeats)), {}, ReadOnlyDict(self.statistics), self.slip_tally.to_corner,
-            self.seat_dissipation,
-        )  # fmt: skip
+        return self._restart(Repeats(list(self.repeats)), {})
 
     def restart(self) -> Restart:
         """The restart from the last corner that was reached."""
+        return self._restart(self.repeats.copy(same_history=True), copied_ends(self.corner_log.marks))
+
+    def _restart(self, repeats: Repeats, marks: dict[CycleKey, CycleEnd]) -> Restart:
         return Restart(
-            self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
-            self.repeats.copy(same_history=True), copied_ends(self.corner_log.marks), dict(self.statistics),
-            self.slip_tally.to_corner, self.seat_dissipation,
+            self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work, repeats,
+            marks, ReadOnlyDict(self.statistics), self.slip_tally.to_corner, self.seat_dissipation,
         )  # fmt: skip
 
     def _step(self, load: np.ndarray, ends_cycle: bool, kept: bool, inside: bool = False) -> KnownConfiguration | None:
