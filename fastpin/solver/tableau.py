@@ -91,6 +91,8 @@ class Columns:
         self._position[basis.rows] = np.arange(basis.count)
         self._rows: list[np.ndarray] = []
         self._contact, self._updates = contact, 0
+        unknowns = basis.rates(load_rate)
+        displaced = system.load_displacement(load_rate) + basis.displacement(unknowns)
         self.tableau = Tableau(
             matrix=memory.matrix,
             fresh=np.full(-(-2 * n // WIDTH), -1),
@@ -98,7 +100,7 @@ class Columns:
             source=np.empty(updates, dtype=np.int64),
             slot=np.empty(updates, dtype=np.int64),
             delta=np.empty(updates),
-            rates=self._rates(load_rate),
+            rates=np.r_[unknowns, displaced[basis.others]][self._order],
             order=np.zeros(0, dtype=np.int64),
             tied=np.zeros(0),
             drag=np.zeros(0),
@@ -106,13 +108,6 @@ class Columns:
         )
         self._tie(contact)
         self._tractions = TractionRows(system, basis.rows, contact)
-
-    def _rates(self, load_rate: np.ndarray) -> np.ndarray:
-        """Rates (2n+m,) of the dependent variables."""
-        system, basis = self._system, self._basis
-        unknowns = basis.rates(load_rate)
-        displaced = system.load_displacement(load_rate) + basis.displacement(unknowns)
-        return np.r_[unknowns, displaced[basis.others]][self._order]
 
     def _tie(self, contact: Contact) -> None:
         """Tie the shear of each node to the pressure for the expected sense of slip. A wrong tie costs one update."""
