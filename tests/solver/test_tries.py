@@ -1,13 +1,14 @@
 """The tries of a history: the order of their grids."""
 
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import fastpin
 from fastpin.model.grid import Grid
 from fastpin.model.options import SolveOptions
 from fastpin.solver import task
 from fastpin.solver.errors import ArcError, ConvergenceError, SolveError
-from fastpin.solver.task import Task, Unfit, first_followed, wider_arcs
+from fastpin.solver.task import Task, Unfit, first_followed, one_blas_thread, wider_arcs
 
 STEEL = fastpin.MATERIALS["steel"]
 PROBLEM = fastpin.Problem.from_load_parameter(fastpin.MaterialPair(STEEL, STEEL), 0.1, 0.4)
@@ -76,3 +77,14 @@ def test_tries_go_on_after_a_grid_that_was_unfit() -> None:
 def test_without_an_arc_the_contact_is_cut_off() -> None:
     with pytest.raises(ArcError, match="give a wider one"):
         first_followed(wider_arcs([]), lambda grid, strict: grid)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_blas_has_one_thread_in_a_run_and_its_own_number_afterwards(threads: int) -> None:
+    def numbers() -> set[int]:
+        return {library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"}
+
+    with threadpool_limits(limits=threads, user_api="blas"):
+        with one_blas_thread():
+            assert numbers() == {1}
+        assert numbers() == {threads}
