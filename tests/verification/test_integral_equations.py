@@ -188,32 +188,6 @@ def test_bad_input_names_the_argument():
 # --- solved states ----------------------------------------------------------------------------------------
 
 
-def test_solved_states_satisfy_the_papers_equations(titanium_in_aluminium):
-    """Log kernels and no derivatives in the solver, Cauchy kernels here: the residuals fall with the mesh."""
-    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
-    first, second = [], []
-    for nodes in (101, 201, 401):
-        state = solve(problem, [{"P": 1.0}], nodes=nodes)[-1]
-        for largest, one in zip((first, second), residuals_away(state, 0.085), strict=True):
-            largest.append(one)
-    assert rate(first) > 1.5
-    assert rate(second) > 1.5
-    assert first[-1] < 2e-5
-    assert second[-1] < 5e-6
-
-
-def test_solved_states_under_remote_stress_satisfy_them(titanium_in_aluminium):
-    """Q, remote stress and a rotation: the second equation in stick zones, where it holds without derivatives."""
-    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.5, "centre")
-    history = [{"P": 1.0}, {"Q": 0.2, "sxx": 0.3, "syy": -0.1}]
-    worst = []
-    for nodes in (101, 201, 401):
-        state = solve(problem, history, nodes=nodes)[-1]
-        worst.append(residuals_away(state, 0.15)[1])
-    assert worst[-1] < 1e-4
-    assert rate(worst) > 1.0
-
-
 # --- finite bodies ----------------------------------------------------------------------------------------
 
 

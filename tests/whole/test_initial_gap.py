@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.bodies import Bushing, Ring, Tube
+from fastpin.bodies import Bushing, Ring
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
-from fastpin.kernels.status import OPEN, STICK
+from fastpin.kernels.status import STICK
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
@@ -27,18 +27,11 @@ from fastpin.verification import interference
 from fastpin.verification.comparisons import all_round_difference
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from tests.support.checks.integral_equations import residuals_away
-from tests.support.checks.sliding import solve_sliding
 from tests.support.once import solve_once
 from tests.support.programs import assert_same_bits
 
 CIRCLE = Grid.circle(120)
 FRETTED = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2, "P": 0.5}, {"P": 0.9}]
-PAIRS = {"like": LIKE, "unlike": UNLIKE}
-BODIES = {
-    "solid": {},
-    "tube in ring": {"pin_body": Tube(0.5), "plate_body": Ring(2.0)},
-    "bush in ring": {"plate_body": Bushing(Material(0.5, 0.3), 1.4, inside=Ring(3.0))},
-}
 
 
 def gap(*terms, pin=()):
@@ -56,30 +49,12 @@ def most_different(ones, others):
 # --- exact relations ---------------------------------------------------------------------------------------------
 
 
-def fit_error(pair, order, friction, nodes, **bodies):
-    """Difference of an unloaded interference fit from its closed form, over N0."""
-    problem = Problem.from_load_parameter(pair, -0.3, friction, gap=gap(Harmonic(order, 0.02, 0.01)), **bodies)
-    (state,) = solve(problem, [{"P": 0.0}], grid=Grid.circle(nodes))
-    assert np.all(state.status != OPEN)
-    assert friction == 0.0 or np.all(state.status == STICK)
-    return all_round_difference(state)
-
-
-@pytest.mark.parametrize("friction", [0.0, 1e6], ids=["frictionless", "stuck"])
-@pytest.mark.parametrize("order", [1, 2, 3, 6])
-@pytest.mark.parametrize(("pair", "bodies"), [("like", "solid"), ("unlike", "solid"), ("unlike", "tube in ring")])
-def test_waves_of_an_interference_fit_have_closed_forms(pair, bodies, order, friction):
-    """The error falls with the square of the spacing. Measured with 400 nodes: docs/accuracy-tables.md."""
-    coarse, fine = (fit_error(PAIRS[pair], order, friction, nodes, **BODIES[bodies]) for nodes in (60, 120))
-    if order == 1 and friction == 0.0:  # a shift
-        assert max(coarse, fine) < 1e-12
-        return
-    assert fine < 6e-5 * order**2
-    assert 1.9 < math.log2(coarse / fine) < 2.1
-
-
 def test_the_closed_form_of_other_bodies_holds_in_a_bush():
-    assert fit_error(UNLIKE, 2, 1e6, 120, **BODIES["bush in ring"]) < 7e-5
+    bodies = {"plate_body": Bushing(Material(0.5, 0.3), 1.4, inside=Ring(3.0))}
+    problem = Problem.from_load_parameter(UNLIKE, -0.3, 1e6, gap=gap(Harmonic(2, 0.02, 0.01)), **bodies)
+    (state,) = solve(problem, [{"P": 0.0}], grid=CIRCLE)
+    assert np.all(state.status == STICK)
+    assert all_round_difference(state) < 7e-5
 
 
 @pytest.mark.parametrize("order", [2, 3])
@@ -109,18 +84,6 @@ def test_no_closed_form_for_the_first_slip_of_an_uneven_fit():
 ROUND = Problem.from_load_parameter(UNLIKE, 0.3, 0.4, "body")
 
 
-@pytest.mark.parametrize(
-    ("clearance", "terms"),
-    [(0.1, (Harmonic(0, 0.2),)), (0.0, (Harmonic(0, 0.3),)), (0.3, (Harmonic(1, 0.5, -0.2),))],
-    ids=["constant", "constant in a neat fit", "shift beyond the clearance"],
-)
-def test_constants_are_a_clearance_and_first_waves_a_shift(clearance, terms):
-    """Measured: 2e-14."""
-    expected = solve_once(ROUND, FRETTED, grid=CIRCLE)
-    found = solve(Problem.from_load_parameter(UNLIKE, clearance, 0.4, "body", gap=gap(*terms)), FRETTED, grid=CIRCLE)
-    assert most_different(expected, found) < 2e-13
-
-
 def test_a_constant_is_an_interference_too():
     """The uniform pressure is -clearance over the uniform compliance."""
     one = Problem.from_load_parameter(UNLIKE, -0.2, 0.4)
@@ -128,16 +91,6 @@ def test_a_constant_is_an_interference_too():
     states = [solve(problem, FRETTED, grid=CIRCLE) for problem in (one, two)]
     assert two.is_gripped
     assert most_different(*states) < 1e-12
-
-
-def test_without_friction_an_ellipse_is_a_remote_stress():
-    """Half axes R + e, R - e are the hole under D = 2G e/(R k'); measured: 2e-14."""
-    smooth = Problem.from_load_parameter(UNLIKE, 0.3, 0.0, "centre", "fixed")
-    size = 0.2 * System.build(smooth, CIRCLE, 1.0).plate
-    ellipse = Problem.from_load_parameter(UNLIKE, 0.3, 0.0, "centre", "fixed", gap=InitialGap(Profile.ellipse(size)))
-    pushed = [{"P": 1.0}, {"Q": 0.3}]
-    stretched = solve(smooth, [{"sxx": 0.1, "syy": -0.1}, *pushed], grid=CIRCLE)
-    assert most_different(stretched.states[1:], solve(ellipse, pushed, grid=CIRCLE)) < 2e-13
 
 
 def test_an_ellipse_and_its_loads_turn_together():
@@ -454,19 +407,6 @@ def test_the_integral_equations_hold_with_a_gap(name):
     coarse, fine = (residuals_away(pushed(name, nodes), 0.12) for nodes in (101, 201))
     assert max(coarse[0], 3.0 * fine[0]) < 1e-4
     assert max(coarse[1], 5.0 * fine[1]) < 3e-5
-
-
-def test_full_sliding_with_a_gap():
-    """Measured with 101, 201 and 401 nodes: the peak is 6.8e-5, 2.1e-5, 4.6e-6 off."""
-    waves = gap(Harmonic(2, 0.03, 0.02), Harmonic(3, 0.01))
-    problem = Problem.from_load_parameter(UNLIKE, 0.5, 0.3, "centre", "fixed", gap=waves)
-    state, series = (
-        solve(problem, [{"P": 1.0}, {"Q": 1.0}], nodes=201)[-1],
-        solve_sliding(problem, {"P": 1.0, "Q": 1.0}),
-    )
-    assert state.peak_pressure == pytest.approx(series.peak_pressure, rel=4e-5)
-    assert state.resultants["M"] == pytest.approx(series.moment, rel=4e-6)
-    assert state.contact[0] == pytest.approx(series.contact, abs=2e-5)
 
 
 def test_a_flat_needs_lengths():
