@@ -3,7 +3,6 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +13,7 @@ from fastpin.casefile.reader import EXAMPLE, parse_case
 from fastpin.errors import InputError
 from fastpin.model.materials import MATERIALS, Material
 from fastpin.model.problem import Problem
+from tests.support.bodies import soft_plate
 from tests.support.body_texts import HEAD
 from tests.support.commands import refused
 from tests.support.faults import faults_of
@@ -21,13 +21,6 @@ from tests.support.faults import faults_of
 LINES = HEAD.count("\n")
 BUSH = "[plate_body]\nE = 110e9\nnu = 0.34\nouter_radius = 12.5e-3\n"
 BRONZE = Material(110e9, 0.34)
-
-
-def plate(**given: Any) -> Compliance:
-    """A small plate by hand: nothing but a softer hole."""
-    matrix = np.zeros((18, 18))
-    matrix[0, 0] = 0.25
-    return Compliance(**{"nu": 0.33, "plane": "strain", "hole_radius": 0.01, "matrix": matrix} | given)
 
 
 def problem(bodies: str, folder: Path | str = ".", head: str = HEAD) -> Problem:
@@ -88,17 +81,17 @@ def test_bodies_of_the_plate(keys, body):
 
 
 def test_a_compliance_lies_beside_the_case_file(tmp_path):
-    (tmp_path / "lug.json").write_text(plate().to_text())
+    (tmp_path / "lug.json").write_text(soft_plate().to_text())
     for keys in ('file = "lug.json"\n', 'kind = "compliance"\nfile = "lug.json"\n'):
-        assert problem(f"[plate_body]\n{keys}", tmp_path).plate_body == plate()
+        assert problem(f"[plate_body]\n{keys}", tmp_path).plate_body == soft_plate()
 
 
 def test_a_compliance_that_changes_is_read_again(tmp_path):
     path = tmp_path / "lug.json"
-    path.write_text(plate().to_text())
+    path.write_text(soft_plate().to_text())
     first = problem('[plate_body]\nfile = "lug.json"\n', tmp_path).plate_body
     assert problem('[plate_body]\nfile = "lug.json"\n', tmp_path).plate_body is first
-    path.write_text(plate(columns={"sxx": np.ones(18)}).to_text())
+    path.write_text(soft_plate(columns={"sxx": np.ones(18)}).to_text())
     assert problem('[plate_body]\nfile = "lug.json"\n', tmp_path).plate_body != first
 
 
@@ -128,7 +121,7 @@ def test_bodies_beside_dundurs_parameters(tmp_path):
     assert (found.pin_body, found.plate_body) == (Tube(5e-3), Ring(2e-2, "half"))
     assert found.surfaces.dundurs() == pytest.approx((0.2, 0.05))
     assert problem(BUSH, head=head).plate_body == Bushing(BRONZE, 0.0125)
-    (tmp_path / "lug.json").write_text(plate(nu=found.pair.plate.nu).to_text())
+    (tmp_path / "lug.json").write_text(soft_plate(nu=found.pair.plate.nu).to_text())
     assert problem('[plate_body]\nfile = "lug.json"\n', tmp_path, head).plate_body.nu == found.pair.plate.nu
     loose = dundurs + HEAD[HEAD.index("[contact]") :].replace(
         "hole_radius = 10e-3\nclearance = 20e-6", "load_parameter = 0.1"
@@ -237,20 +230,7 @@ def test_faults_of_the_contact_beside_bodies_stand_in_contact(contact, bodies, w
     assert head.splitlines()[line + head.count("\n") - 1].split(" =")[0] == words.split(":")[0]
 
 
-def test_loads_that_a_body_can_not_carry_stand_at_their_blocks(tmp_path):
-    head = HEAD + "[[load]]\nsxx = 1e6\n"
-    problem('[plate_body]\nouter_radius = 2e-2\nsupport = "uniform"\n', head=head)
-    (tmp_path / "lug.json").write_text(plate().to_text())
-    for bodies, words in (
-        ("[plate_body]\nouter_radius = 2e-2\n", "sxx: a held rim leaves no remote stress"),
-        (BUSH + "ring_outer_radius = 2e-2\n", "sxx: a held rim leaves no remote stress"),
-        ('[plate_body]\nfile = "lug.json"\n', "sxx: the compliance of the plate has no column of this load"),
-    ):
-        line, text = the_fault(bodies, tmp_path, head)
-        assert (line, text.partition(";")[0]) == (0, words)
-
-
-GOOD = plate().document()
+GOOD = soft_plate().document()
 
 
 def with_number(row: int, column: int, value: float) -> str:
@@ -297,12 +277,12 @@ WRONG_FILES: dict[str, tuple[str | bytes | Callable[[Path], object], str]] = {
     "missing": (lambda path: None, "there is no such file"),
     "folder": (Path.mkdir, "is a directory, a file is needed"),
     "material": (
-        plate(nu=0.3).to_text(),
+        soft_plate(nu=0.3).to_text(),
         "the compliance was made for nu = 0.3, plane strain; the plate has nu = 0.33",
     ),
-    "plane": (plate(plane="stress").to_text(), "the compliance was made for nu = 0.33, plane stress"),
+    "plane": (soft_plate(plane="stress").to_text(), "the compliance was made for nu = 0.33, plane stress"),
     "hole": (
-        plate(hole_radius=0.02).to_text(),
+        soft_plate(hole_radius=0.02).to_text(),
         "the compliance was made for a hole of radius 0.02; the hole radius is 0.01",
     ),
 }
@@ -361,7 +341,7 @@ def test_bodies_are_checked_without_a_contact_section_or_a_hole():
 
 
 def test_a_compliance_beside_a_wrong_material_is_not_blamed(tmp_path):
-    (tmp_path / "lug.json").write_text(plate().to_text())
+    (tmp_path / "lug.json").write_text(soft_plate().to_text())
     head = HEAD.replace('material = "aluminium"', 'material = "tin"')
     line, text = the_fault('[plate_body]\nfile = "lug.json"\n', tmp_path, head)
     assert text.startswith('material: there is no material "tin"')

@@ -13,20 +13,8 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.options import SolveOptions
+from tests.support.body_texts import HEAD
 from tests.support.faults import fault_of, faults_of
-
-GOOD = """\
-[pin]
-material = "steel"
-[plate]
-material = "aluminium"
-[contact]
-hole_radius = 0.01
-clearance = 1e-5
-friction = 0.3
-[[load]]
-P = 1e6
-"""
 
 
 def faults(text: str) -> list[tuple[int, str]]:
@@ -38,8 +26,8 @@ def the_fault(text: str, folder: Path | str = ".") -> tuple[int, str]:
 
 
 def replaced(line: str, by: str) -> str:
-    assert line in GOOD
-    return GOOD.replace(line, by)
+    assert line in HEAD
+    return HEAD.replace(line, by)
 
 
 # -- what is read --------------------------------------------------------------------------------------------
@@ -81,7 +69,7 @@ def test_every_commented_line_of_the_example_is_valid() -> None:
 
 
 def test_materials_by_name_moduli_and_rigid() -> None:
-    assert parse_case(GOOD).problem.pair == MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    assert parse_case(HEAD).problem.pair == MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
     case = parse_case(replaced('material = "steel"', "rigid = true"))
     assert case.problem.pair.pin.is_rigid
     case = parse_case(replaced('material = "steel"', "E = 1e9\nnu = 0.25\nrigid = false"))
@@ -112,7 +100,7 @@ def test_dundurs(convention: str) -> None:
 
 
 def test_load_blocks_in_order_with_lists_and_repeats() -> None:
-    text = GOOD + "[[load]]\nQ = [1, -1]\nsxx = 5.5\nrepeat = 2\n[[load]]\nQ = [\n  7, # seven\n  8,\n]\n"
+    text = HEAD + "[[load]]\nQ = [1, -1]\nsxx = 5.5\nrepeat = 2\n[[load]]\nQ = [\n  7, # seven\n  8,\n]\n"
     values = parse_case(text).history.values()
     assert values[:, LOADS.index("Q")].tolist() == [0, 1, -1, 1, -1, 7, 8]
     assert values[:, LOADS.index("sxx")].tolist() == [0, 5.5, 5.5, 5.5, 5.5, 5.5, 5.5]
@@ -126,12 +114,12 @@ def test_a_list_of_one_is_a_corner() -> None:
 def test_history_from_csv_beside_the_case_file(tmp_path: Path) -> None:
     (tmp_path / "loads.csv").write_text("P,Q\n1e6,0\n,2e5\n")
     path = tmp_path / "case.toml"
-    path.write_text(GOOD.replace("[[load]]\nP = 1e6", '[history]\ncsv = "loads.csv"\nrepeat = 2'))
+    path.write_text(HEAD.replace("[[load]]\nP = 1e6", '[history]\ncsv = "loads.csv"\nrepeat = 2'))
     assert read_case(path).history.values()[:, 1].tolist() == [0, 2e5, 0, 2e5]
 
 
 def test_solver_options() -> None:
-    text = GOOD + '[solve]\nnodes = 51\nmethod = "increment"\nincrements = 7\narc = [-3, 0]\nbetween = [0.25, 0.5]\n'
+    text = HEAD + '[solve]\nnodes = 51\nmethod = "increment"\nincrements = 7\narc = [-3, 0]\nbetween = [0.25, 0.5]\n'
     options = parse_case(text + 'keep = "every 3"\nshortcut = false\n').options
     assert options.keywords() == {
         "nodes": 51,
@@ -149,7 +137,7 @@ def test_solver_options() -> None:
 @pytest.mark.parametrize("ends", ["\r\n", "\n"])
 def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
     path = tmp_path / "case.toml"
-    path.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", ends).encode())
+    path.write_bytes(b"\xef\xbb\xbf" + HEAD.replace("\n", ends).encode())
     assert read_case(path).problem.friction == 0.3
 
 
@@ -168,12 +156,8 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
         ("[pin]", "friction = 0.2\n[pin]", 1, "belongs in [contact]"),
         ("P = 1e6", "P = 1e6\nQx = 3", 11, 'unknown key "Qx" in [[load]]'),
         # types
-        ("friction = 0.3", 'friction = "0.3"', 8, 'friction: must be a number, not "0.3"'),
-        ("friction = 0.3", "friction = true", 8, "friction: must be a number, not true"),
-        ("friction = 0.3", "friction = nan", 8, "friction: must be a finite number"),
         ("friction = 0.3", "friction = -inf", 8, "friction: must be a finite number"),
         ("friction = 0.3", f"friction = 1{'0' * 400}", 8, "friction: must be a finite number"),
-        ("friction = 0.3", "friction = [0.3]", 8, "friction: must be a number"),
         ("friction = 0.3", "friction = 2020-01-01", 8, "friction: must be a number"),
         ("P = 1e6", "P = true", 10, "P: must be a number"),
         ("P = 1e6", "P = [1e6, false]", 10, "value 2 of P: must be a number"),
@@ -188,18 +172,12 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
         ('material = "steel"', "rigid = true\nnu = 0.3", 3, "nu can't be given together with rigid"),
         ('material = "steel"', "E = 1e9", 1, "nu is missing"),
         ('material = "steel"', "", 1, "needs material, or E and nu, or rigid"),
-        ('material = "steel"', "E = -1e9\nnu = 0.3", 2, "must be positive"),
-        ('material = "steel"', "E = 1e9\nnu = 0.6", 3, "between 0 and 0.5"),
         ('material = "steel"', "E = inf\nnu = 0.3", 2, "write rigid = true"),
         # contact
         ("friction = 0.3", "", 5, "friction is missing"),
-        ("friction = 0.3", "friction = -1", 8, "must not be negative"),
-        ("clearance = 1e-5", "clearance = 0.02", 7, "must lie between minus and plus the hole radius"),
-        ("hole_radius = 0.01", "hole_radius = 0", 6, "must be positive"),
-        ("hole_radius = 0.01", "load_parameter = 0.1", 7, "clearance: can't be given together"),
+        ("hole_radius = 10e-3", "load_parameter = 0.1", 7, "clearance: can't be given together"),
         ("friction = 0.3", 'friction = 0.3\nplane = "strian"', 9, 'did you mean "strain"'),
         ("friction = 0.3", 'friction = 0.3\npin_load = "body"\nrotation = "fixed"', 10, "must rotate freely"),
-        ("friction = 0.3", "friction = 0.3\nhub_radius = 0.005", 9, 'only a pin with rotation = "fixed"'),
         ("friction = 0.3", 'friction = 0.3\nrotation = "fixed"\nhub_radius = 1', 10, "hole radius"),
         # loads
         ("[[load]]\nP = 1e6", "", 0, "no loads"),
@@ -224,21 +202,14 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
         ("P = 1e6", "P = 1e6\n[[load]]\nrotation = 0.1", 12, "rotation"),
         # solver
         ("P = 1e6", "P = 1e6\n[solve]\nnodes = 4", 12, "nodes: must be a whole number from 5"),
-        ("P = 1e6", "P = 1e6\n[solve]\nnodes = 1000000", 12, "nodes: must be a whole number from 5"),
         ("P = 1e6", 'P = 1e6\n[solve]\nmethod = "paht"', 12, 'did you mean "path"'),
-        ("P = 1e6", 'P = 1e6\n[solve]\nmethod = "increment"\nincrements = 0', 13, "increments: must be"),
-        ("P = 1e6", "P = 1e6\n[solve]\nincrements = 80", 12, 'increments: has no effect with method "path"'),
         ("P = 1e6", "P = 1e6\n[solve]\narc = [-90, 90]", 12, "in rad"),
-        ("P = 1e6", "P = 1e6\n[solve]\narc = [0, -1]", 12, "from a smaller to a larger"),
-        ("P = 1e6", "P = 1e6\n[solve]\narc = 2", 12, "list of two angles"),
-        ("P = 1e6", "P = 1e6\n[solve]\nbetween = [0.5, 0.4]", 12, "increasing fractions"),
-        ("P = 1e6", "P = 1e6\n[solve]\nbetween = -1", 12, "between: must be"),
         # TOML itself
         ("friction = 0.3", "friction = .3", 8, "digit before its point, 0.3"),
         ("friction = 0.3", "friction = 0.3\nplane = stress", 9, 'text must stand in quotes, "stress"'),
         ("friction = 0.3", "friction = ", 8, "friction: its value is missing"),
         ("friction = 0.3", "friction = 30 %", 8, "friction: must be a number without a unit, not 30 %; SI units"),
-        ("hole_radius = 0.01", "hole_radius = 10 mm", 6, "hole_radius: must be a number without a unit, not 10 mm"),
+        ("hole_radius = 10e-3", "hole_radius = 10 mm", 6, "hole_radius: must be a number without a unit, not 10 mm"),
         ("friction = 0.3", "friction = 0,3", 8, "friction: a number has a decimal point, 0.3"),
         ("friction = 0.3", "friction = 0.3 or so", 8, "friction: must be one value, not 0.3 or so"),
         ("[[load]]", "[load]\nP = 1\n[[load]]", 11, '"load" is given twice; several loads are [[load]] blocks'),
@@ -263,7 +234,7 @@ def test_moment_on_a_body_loaded_pin_names_the_line_that_gives_it() -> None:
 
 @pytest.mark.parametrize("name", [name for name in LOADS if name not in ("ux", "uy", "rotation")])
 def test_each_load_is_a_load_alone(name: str) -> None:
-    text = GOOD.replace("P = 1e6", f"P = 1e6\n[[load]]\n{name} = 0.1")
+    text = HEAD.replace("P = 1e6", f"P = 1e6\n[[load]]\n{name} = 0.1")
     if "temperature" in name:
         text = text.replace('um"\n', 'um"\nexpansion = 1e-5\n').replace('steel"\n', 'steel"\nexpansion = 1e-5\n')
     case = parse_case(text)
@@ -276,7 +247,7 @@ def test_two_loads_that_can_not_act() -> None:
 
 
 def test_interference_fit_needs_the_whole_circle() -> None:
-    text = replaced("clearance = 1e-5", "clearance = -1e-5") + "[solve]\narc = [-3, 0]\n"
+    text = replaced("clearance = 20e-6", "clearance = -1e-5") + "[solve]\narc = [-3, 0]\n"
     number, message = the_fault(text)
     assert number == 12
     assert "interference" in message

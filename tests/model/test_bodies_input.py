@@ -16,20 +16,13 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from tests.support.bodies import soft_plate
 from tests.support.refusals import refused
 
 PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
 BRONZE = Material(110e9, 0.34, "bronze")
 SOFT = Material(1e-20, 0.3)  # softer than steel by more than any two moduli may differ
 HELD, FREE = Ring(0.02), Ring(0.02, "uniform")
-
-
-def compliance(**given: Any) -> Compliance:
-    """A small plate by hand: nothing but a softer hole and a column of sxx."""
-    matrix = np.zeros((18, 18))
-    matrix[0, 0] = 0.25
-    fields = {"nu": 0.33, "plane": "strain", "hole_radius": 0.01, "matrix": matrix, "columns": {"sxx": np.ones(18)}}
-    return Compliance(**fields | given)
 
 
 def problem(**given: Any) -> Problem:
@@ -52,12 +45,14 @@ def test_a_held_rim_takes_no_remote_stress(body, name):
 
 
 def test_a_compliance_takes_the_loads_of_its_columns():
-    check_loads(problem(plate_body=compliance()), LoadHistory([{"sxx": 1e6, "syy": 0.0, "M": 10.0}]))
+    check_loads(
+        problem(plate_body=soft_plate(columns={"sxx": np.ones(18)})), LoadHistory([{"sxx": 1e6, "syy": 0.0, "M": 10.0}])
+    )
     with pytest.raises(InputError, match="no column of this load; its columns are: sxx") as raised:
-        check_loads(problem(plate_body=compliance()), LoadHistory([{"syy": 1e6}]))
+        check_loads(problem(plate_body=soft_plate(columns={"sxx": np.ones(18)})), LoadHistory([{"syy": 1e6}]))
     assert raised.value.field == "syy"
     with pytest.raises(InputError, match="its columns are: none"):
-        check_loads(problem(plate_body=compliance(columns={})), LoadHistory([{"sxy": 1e6}]))
+        check_loads(problem(plate_body=soft_plate()), LoadHistory([{"sxy": 1e6}]))
 
 
 @pytest.mark.parametrize("load", ["uniform", "body", "held"])
@@ -69,50 +64,18 @@ def test_a_hollow_pin_carries_a_moment_and_may_be_held(load, rotation):
 
 
 @pytest.mark.parametrize(
-    ("given", "field", "words"),
-    [
-        ({"pin_body": Tube(0.011)}, "bore_radius", "must be at most 0.0096, 0.96 of the hole radius, not 0.011"),
-        ({"pin_body": Tube(0.00995)}, "bore_radius", "must be at most 0.0096"),
-        ({"pin_body": Tube(0.005), "pin_load": "body"}, "pin_load", 'load = "body" of the tube'),
-        ({"pin_body": Tube(0.005), "rotation": "fixed", "hub_radius": 0.004}, "hub_radius", "bore radius 0.005"),
-        ({"pin_body": Ring(0.02)}, "pin_body", "must be a Disk or a Tube"),
-        ({"plate_body": Ring(0.009)}, "outer_radius", "must lie between 0.0104167 and 10000 for the hole radius 0.01"),
-        ({"plate_body": Ring(0.01005)}, "outer_radius", "must lie between 0.0104167"),
-        ({"plate_body": Tube(0.005)}, "plate_body", "must be a Plate, a Ring, a Bushing or a Compliance"),
-        ({"plate_body": Plate((0.005, 0.0))}, "reaction", "must be a point from 0.0105"),
-        ({"plate_body": HELD, "drive": "ux", "gauge_radius": 0.03}, "gauge_radius", "at most the outer radius 0.02"),
-        ({"plate_body": compliance(nu=0.3)}, "plate_body", "nu = 0.3, plane strain; the plate has nu = 0.33"),
-        ({"plate_body": compliance(plane="stress")}, "plate_body", "plane stress; the plate has nu = 0.33, plane str"),
-        ({"plate_body": compliance(hole_radius=0.02)}, "plate_body", "a hole of radius 0.02; the hole radius is 0.01"),
-        ({"plate_body": Bushing(BRONZE, 0.0125, 0.02)}, "interference", "smaller than the outer radius 0.0125"),
-        (
-            {"plate_body": Bushing(BRONZE, 0.0125, inside=Ring(0.012))},
-            "outer_radius",
-            "outer radius of the bush 0.0125",
-        ),
-        ({"plate_body": Bushing(SOFT, 0.0125)}, "material", "the moduli of pin and bush must not differ"),
-    ],
-)
-def test_bodies_that_do_not_fit_are_refused_in_one_sentence(given, field, words):
-    error = refused(problem, **given)
-    assert error.field == field
-    assert words in error.reason
-
-
-@pytest.mark.parametrize(
     ("make", "field", "words"),
     [
-        (lambda: Bushing(BRONZE, 0.0125, -1e-6), "interference", "must not be negative, not -1e-06"),
-        (lambda: Bushing(BRONZE, 0.0125, friction=-0.1), "friction", "must not be negative, not -0.1"),
-        (lambda: Bushing(Material.rigid(), 0.0125), "material", "a rigid bush is a rigid plate"),
+        (lambda: problem(pin_body=Ring(0.02)), "pin_body", "must be a Disk or a Tube"),
+        (lambda: problem(plate_body=Tube(0.005)), "plate_body", "must be a Plate, a Ring, a Bushing or a Compliance"),
+        (lambda: problem(plate_body=Bushing(SOFT, 0.0125)), "material", "the moduli of pin and bush must not differ"),
         (lambda: Bushing(BRONZE, math.nan), "outer_radius", "must be a finite number"),
-        (lambda: Ring(0.02, "clamped"), "support", '"held", "uniform"'),
-        (lambda: Tube(0.005, "centre"), "load", '"uniform", "normal"'),
         (lambda: Plate((1.0,)), "reaction", "must be a point"),
         (lambda: Plate((1.0, math.nan)), "reaction", "must be a finite number"),
     ],
 )
-def test_bad_fields_of_bodies_are_refused_in_one_sentence(make, field, words):
+def test_bodies_that_only_python_can_have_are_refused_in_one_sentence(make, field, words):
+    """tests/whole/test_bad_bodies.py has the others."""
     error = refused(make)
     assert error.field == field
     assert words in error.reason

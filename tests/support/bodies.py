@@ -1,6 +1,7 @@
 """Joints with hollow pins, ring lugs, bushes and compliances."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -54,3 +55,10 @@ def softer_hole(radius: float, nu: float, plane: Plane) -> Compliance:
     matrix = np.zeros((26, 26))
     matrix[0, 0] = 0.1
     return Compliance(nu, plane, radius, matrix)
+
+
+def soft_plate(softer: float = 0.25, **given: Any) -> Compliance:
+    """An aluminium plate by hand, in metres: nothing but a softer hole. Other fields may be given."""
+    matrix = np.zeros((18, 18))
+    matrix[0, 0] = softer
+    return Compliance(**{"nu": 0.33, "plane": "strain", "hole_radius": 0.01, "matrix": matrix} | given)

@@ -3,11 +3,9 @@
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 from fastpin.bodies import Bushing, Plate, Ring, Tube
-from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.reader import parse_case
 from fastpin.cli.main import main
 from fastpin.errors import CaseFileError, InputError
@@ -16,17 +14,12 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.studies.plan import parse_plan
+from tests.support.bodies import soft_plate
 
 PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
 CONTACT = {"hole_radius": 0.01, "clearance": 2e-5, "friction": 0.3}
 BRONZE = Material(110e9, 0.34)
 BUSH = {"E": 110e9, "nu": 0.34, "outer_radius": 0.0125}
-
-
-def plate(**given: Any) -> Compliance:
-    matrix = np.zeros((18, 18))
-    matrix[0, 0] = 0.25
-    return Compliance(**{"nu": 0.33, "plane": "strain", "hole_radius": 0.01, "matrix": matrix} | given)
 
 
 def problem(contact: dict[str, Any] | None = None, **bodies: Any) -> Problem:
@@ -74,11 +67,11 @@ TOGETHER: list[tuple[str, str, Values, Any, dict[str, Values]]] = [
     ("contact", "hub_radius", HELD, lambda: problem(HELD, pin_body=Tube(5e-3)), HOLLOW),
     ("contact", "gauge_radius", DRIVEN, lambda: problem(DRIVEN, plate_body=Ring(0.02)), RING),
     ("load.1", "sxx", {"sxx": 1e6}, lambda: loaded(Ring(0.02), sxx=1e6), RING),
-    ("load.1", "syy", {"syy": 1e6}, lambda: loaded(plate(), syy=1e6), FILE),
+    ("load.1", "syy", {"syy": 1e6}, lambda: loaded(soft_plate(), syy=1e6), FILE),
 ]
 """The same, and the values of another section, which does not fit."""
 
-WRONG = {"nu": plate(nu=0.3), "plane": plate(plane="stress"), "hole": plate(hole_radius=0.02)}
+WRONG = {"nu": soft_plate(nu=0.3), "plane": soft_plate(plane="stress"), "hole": soft_plate(hole_radius=0.02)}
 """Compliances of another plate, by the names of their files."""
 
 
@@ -102,7 +95,7 @@ def case_text(values: dict[str, dict[str, Any]]) -> str:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    for name, body in {"good": plate(), **WRONG}.items():
+    for name, body in {"good": soft_plate(), **WRONG}.items():
         (tmp_path / f"{name}.json").write_text(body.to_text())
     return tmp_path
 
