@@ -18,7 +18,6 @@ from tests.support.body_texts import HEAD as CASE
 
 RING = CASE + '[plate_body]\nkind = "ring"\nouter_radius = 2e-2\nsupport = "half"\n'
 BUSH = CASE + '[plate_body]\nmaterial = "steel"\nouter_radius = 12e-3\nring_outer_radius = 2e-2\nsupport = "half"\n'
-BRONZE = Material(110e9, 0.34)
 
 
 def planned(folder: Path, base: str, text: str) -> Plan:

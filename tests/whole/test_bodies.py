@@ -1,4 +1,4 @@
-"""What must hold with hollow pins, rings, bushes and compliances: mirror, split, scales, arcs, energy, increments."""
+"""What must hold with hollow pins, rings, bushes and compliances: scales, arcs, drives and limits."""
 
 import numpy as np
 import pytest
@@ -6,40 +6,13 @@ import pytest
 from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from tests.support.bodies import JOINTS, UNLIKE, joint_problem
-from tests.support.programs import assert_same_bits
 
 ALL = [*JOINTS, "ring, compliance"]
-SOME = ["tube", "half ring", "tube, bush, ring", "ring, compliance"]
 ARC = (BOTTOM - 1.75, BOTTOM + 1.75)
 HISTORY = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"P": 0.8, "Q": 0.2}]
-
-
-@pytest.mark.parametrize("name", [name for name in ALL if name not in ("reaction", "half ring")])
-def test_mirror(name):
-    """Turning Q round mirrors the state. Measured: 1e-13."""
-    problem = joint_problem(name, 0.1, 0.4)
-    arc = (BOTTOM - 2.3, BOTTOM + 2.3)
-    one, two = (solve(problem, [{"P": 1.0}, {"Q": s * 0.3}, {"Q": -s * 0.3}], nodes=101, arc=arc) for s in (1, -1))
-    for here, there in zip(one, two, strict=True):
-        assert here.pressure == pytest.approx(there.pressure[::-1], abs=1e-12)
-        assert here.shear == pytest.approx(-there.shear[::-1], abs=1e-12)
-        assert here.slip == pytest.approx(-there.slip[::-1], abs=1e-11)
-        assert (here.dx, here.rotation) == pytest.approx((-there.dx, -there.rotation), abs=1e-11)
-        assert here.dissipation == pytest.approx(there.dissipation, rel=1e-9)
-
-
-@pytest.mark.parametrize("name", SOME)
-@pytest.mark.parametrize("solver", [{"method": "path"}, {"method": "increment", "increments": 10}])
-def test_a_split_history_gives_the_same_bits(name, solver):
-    problem, history = joint_problem(name, 0.1, 0.4), LoadHistory(HISTORY)
-    whole = solve(problem, history, nodes=81, arc=ARC, **solver)
-    first = solve(problem, history[:2], nodes=81, arc=ARC, **solver)
-    second = solve(problem, history[2:], start=first, **solver)
-    assert_same_bits(whole, [*first, *second])
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -88,31 +61,6 @@ def test_si_and_dimensionless_problems_agree(interference):
     assert si.pressure * radius / force == pytest.approx(one.pressure, abs=1e-12)
     assert si.slip / length == pytest.approx(one.slip, abs=1e-12)
     assert si.dy / length == pytest.approx(one.dy, rel=1e-9)
-
-
-@pytest.mark.parametrize("name", ALL)
-def test_work_is_energy_plus_dissipation(name):
-    """The asymmetry of collocation leaves a difference of second order. Measured with 201 nodes: 2e-5 to 6e-5."""
-    problem = joint_problem(name, 0.1, 0.4)
-    worst = []
-    for nodes in (101, 201):
-        result = solve(problem, HISTORY, nodes=nodes, arc=(BOTTOM - 2.2, BOTTOM + 2.2))
-        assert result[-1].dissipation > result[1].dissipation > 0.0
-        size = max(abs(state.energy) for state in result)  # the part in the loads alone is left out: it may be negative
-        worst.append(max(abs(state.work - state.energy - state.dissipation) for state in result) / size)
-    assert worst[1] < min(1e-4, 0.35 * worst[0])
-
-
-@pytest.mark.parametrize("name", SOME)
-def test_increments_converge_to_the_path(name):
-    """First order in the size of the increments. Measured with 40 increments: 9e-4 to 2e-3 of int N."""
-    problem = joint_problem(name, 0.1, 0.4)
-    path = solve(problem, HISTORY[:3], nodes=81, arc=ARC)
-    errors = []
-    for increments in (10, 40):
-        steps = solve(problem, HISTORY[:3], grid=path.grid, method="increment", increments=increments)
-        errors.append(max(np.abs(a.shear - b.shear).sum() / a.pressure.sum() for a, b in zip(path, steps, strict=True)))
-    assert errors[1] < min(4e-3, 0.4 * errors[0])
 
 
 @pytest.mark.parametrize("bodies", [

@@ -186,17 +186,6 @@ def test_several_contacts_work_and_merge(name):
     assert work == pytest.approx(energy, rel=3e-3)
 
 
-def test_increments_tend_to_the_path_of_several_contacts():
-    """Two contacts that merge; measured: 0.033, 0.022, 0.0085, 0.0042 of the peak with 10, 20, 40, 80 increments."""
-    pair, support, clearance, wave, _ = LOBES["3"]
-    problem = Problem.from_load_parameter(pair, clearance, 0.3, *support, gap=gap(wave))
-    history, options = [{"P": 0.05}, {"P": 1.0}, {"Q": 0.2}], {"grid": CIRCLE}
-    path = solve(problem, history, **options)
-    ends = [solve(problem, history, method="increment", increments=count, **options)[-1] for count in (10, 80)]
-    coarse, fine = (most_different([path[-1]], [end]) for end in ends)
-    assert fine < 0.25 * coarse < 0.025
-
-
 @pytest.mark.parametrize("friction", [0.5, 0.7])
 def test_places_that_touch_together_close_as_mirror_images(friction):
     """With less friction than the slope of the hole, tan 29 degrees = 0.55, both contacts slide at first."""

@@ -72,17 +72,6 @@ def test_the_table_of_reference(name: str, nodes: int) -> None:
         assert reading(state, quantity) == pytest.approx(value, abs=most[nodes == 960]), quantity
 
 
-@pytest.mark.parametrize("name", TABLE)
-def test_work_is_energy_and_dissipation_at_second_order(name: str) -> None:
-    """Measured with 240 nodes: 1.5e-5."""
-    coarse, fine = (
-        np.array([state.work - state.energy - state.dissipation for state in fretted(name, nodes)])
-        for nodes in (60, 120)
-    )
-    assert np.abs(fine).max() < 6e-5
-    assert np.abs(np.log2(coarse / fine) - 2.0).max() < 0.01
-
-
 @pytest.mark.parametrize("nodes", [100, 200])
 def test_half_planes_slide_where_the_mean_friction_is_reached(nodes: int) -> None:
     """Two zones of equal pressure carry (0.3 + 0.5)/2 P. One node sticks until then."""
@@ -120,16 +109,6 @@ def test_friction_where_nothing_touches_has_no_effect() -> None:
     for one, other in zip(plain, found, strict=True):
         assert np.array_equal(one.pressure, other.pressure)
         assert np.array_equal(one.shear, other.shear)
-
-
-def test_increments_tend_to_the_path() -> None:
-    history, grid = FRETTED[:3], Grid.circle(60)
-    path = solve(PROBLEMS["M1"], history, grid=grid)[-1]
-    coarse, fine = (
-        np.abs(solve(PROBLEMS["M1"], history, grid=grid, method="increment", increments=count)[-1].shear - path.shear)
-        for count in (10, 80)
-    )
-    assert fine.max() < 0.25 * coarse.max() < 1e-2
 
 
 def test_a_mirrored_friction_has_mirrored_states() -> None:

@@ -1,0 +1,135 @@
+"""What holds for every kind of joint: the balance of energy, increments, mirror images, and histories in parts."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from fastpin.model.angles import BOTTOM
+from fastpin.model.grid import Grid
+from fastpin.model.loads import Corner
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.model.profile import InitialGap, Profile
+from fastpin.model.profile_terms import Harmonic
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from tests.support.bodies import JOINTS, UNLIKE, joint_problem
+from tests.support.joints import joint
+from tests.support.laminates import STEEL, TURNED
+from tests.support.programs import assert_same_bits
+from tests.support.tiers import some_gate
+
+FRETTED: list[Corner] = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"P": 0.6, "Q": 0.1}]
+
+
+class Kind(NamedTuple):
+    """A kind of joint: its problem, its corners, and the half of its arc, rad.
+
+    `increments` is the largest difference of the shear, in parts of int N, with 40 increments a step.
+    """
+
+    problem: Problem
+    corners: list[Corner] = FRETTED
+    half_arc: float = 1.6
+    increments: float = 2.3e-3
+
+    def solved(self, nodes: int = 61, corners: list[Corner] | None = None, **options: Any) -> Result:
+        around = self.half_arc == math.pi
+        arc = BOTTOM - self.half_arc, BOTTOM + self.half_arc
+        grid = Grid.circle(nodes - 1, BOTTOM) if around else Grid.arc(*arc, nodes)
+        return solve(self.problem, self.corners if corners is None else corners, grid=grid, **options)
+
+
+WAVE = Profile((Harmonic(0, 0.35), Harmonic.from_bottom(3, 0.0, 0.2)))
+LOBES = InitialGap(Profile((Harmonic(3, 0.028, 0.009),)))
+WARM = MaterialPair(Material(210e9, 0.3, expansion=12e-6), Material(72e9, 0.33, expansion=23.6e-6), "stress")
+HEATED: list[Corner] = [
+    {"P": 1e6, "temperature": -50.0}, {"Q": 2e5, "temperature": 30.0}, {"Q": -2e5, "pin_temperature": 40.0},
+]  # fmt: skip
+
+
+def plain(*given: str, load_parameter: float = 0.1, friction: float | Profile = 0.4, **more: object) -> Problem:
+    return Problem.from_load_parameter(UNLIKE, load_parameter, friction, *given, **more)
+
+
+def driven(drive: str) -> Problem:
+    return plain("centre", "fixed", load_parameter=0.3, drive=drive, gauge_radius=2.0)
+
+
+KINDS = {
+    "free": Kind(plain("body")),
+    "held": Kind(plain("centre", "fixed")),
+    "moment": Kind(plain("centre"), [{"P": 1.0}, {"Q": 0.3, "M": 0.05}, {"Q": -0.3, "M": -0.05}]),
+    "stress": Kind(plain("body"), [{"P": 1.0}, {"Q": 0.1, "sxx": 0.15}, {"sxx": -0.15, "sxy": 0.05}], 1.7),
+    **{name: Kind(joint_problem(name, 0.1, 0.4), half_arc=2.2) for name in (*JOINTS, "ring, compliance")},
+    "friction along the rim": Kind(plain("centre", "fixed", friction=WAVE), half_arc=math.pi),
+    "friction that falls": Kind(plain("body"), [*FRETTED[:2], {"Q": -0.1, "friction_change": -0.6}]),
+    "gap": Kind(plain("centre", "fixed", gap=LOBES), half_arc=math.pi),
+    "laminate": Kind(Problem.from_load_parameter(MaterialPair(STEEL, TURNED, "stress"), 0.1, 0.3), half_arc=2.2),
+    "bush that slips": Kind(joint(0.28, 0.26), half_arc=math.pi),
+    "ux": Kind(driven("ux"), [{"P": 1.0}, {"ux": 0.06}, {"ux": -0.06, "P": 0.8}, {"sxx": 0.05}], 1.7),
+    "uy": Kind(driven("uy"), [{"uy": -0.45}, {"Q": 0.2}, {"uy": -0.4, "Q": -0.2}], 1.7, 1.7e-2),
+    "ux and uy": Kind(driven("both"), [{"uy": -0.45}, {"ux": 0.06}, {"ux": -0.06, "uy": -0.4}], 1.7, 1.7e-2),
+    "hub on a spring": Kind(
+        plain("centre", "spring", load_parameter=0.3, hub_radius=0.4, hub_stiffness=0.3),
+        [*FRETTED[:2], {"Q": -0.25, "rotation": 0.02}, {"P": 0.6, "Q": -0.2}],
+    ),
+    "temperature": Kind(Problem(WARM, 0.01, 1e-5, 0.4), HEATED, math.pi),
+}
+"""The kinds by name."""
+
+LONG = "friction that falls", "bush that slips"
+UNEVEN = "half ring", "reaction", "friction along the rim", "gap", "laminate"
+"""Kinds without a mirror image of themselves."""
+
+
+@pytest.mark.parametrize("name", some_gate(KINDS, *LONG))
+def test_work_is_energy_and_dissipation_at_second_order(name: str) -> None:
+    """The path is exact. The asymmetry of collocation is left, which falls with the square of the spacing."""
+
+    def left(nodes: int) -> float:
+        states = KINDS[name].solved(nodes).states
+        return max(abs(state.work - state.energy - state.dissipation) for state in states) / states[0].energy
+
+    coarse, fine = left(31), left(61)
+    assert fine < 3e-3
+    assert (3.2 if name == "bush that slips" else 3.9) < coarse / fine < 4.1
+
+
+@pytest.mark.parametrize("name", some_gate(KINDS, *LONG))
+def test_increments_tend_to_the_path(name: str) -> None:
+    path, errors = KINDS[name].solved(), []
+    for increments in (10, 40):
+        steps = KINDS[name].solved(method="increment", increments=increments)
+        pairs = zip(path, steps, strict=True)
+        errors.append(max(np.abs(one.shear - other.shear).sum() / one.pressure.sum() for one, other in pairs))
+    assert errors[1] < min(KINDS[name].increments, 0.4 * errors[0])
+
+
+@pytest.mark.parametrize("options", [{}, {"method": "increment", "increments": 10}], ids=["path", "increment"])
+@pytest.mark.parametrize("name", KINDS)
+def test_a_history_in_parts_has_the_same_bits(name: str, options: dict[str, Any]) -> None:
+    kind = KINDS[name]
+    whole = kind.solved(**options)
+    first = kind.solved(corners=kind.corners[:2], **options)
+    second = solve(kind.problem, kind.corners[2:], start=first, **options)
+    assert_same_bits(whole, [*first, *second])
+
+
+@pytest.mark.parametrize("name", [name for name in KINDS if name not in UNEVEN])
+def test_mirrored_loads_have_mirrored_states(name: str) -> None:
+    """theta becomes -pi - theta. Shear, slip, dx and rotation change their signs."""
+    kind = KINDS[name]
+    signs = dict.fromkeys(("Q", "M", "sxy", "ux", "rotation"), -1.0)
+    turned = [{load: signs.get(load, 1.0) * value for load, value in corner.items()} for corner in kind.corners]
+    here, there = kind.solved(), kind.solved(corners=turned)
+    shift = int(here.grid.closed)  # a circle begins at the bottom
+    for one, other in zip(here, there, strict=True):
+        for field, sign in (("pressure", 1.0), ("shear", -1.0), ("gap", 1.0), ("slip", -1.0)):
+            mine, image = getattr(one, field), np.roll(getattr(other, field)[::-1], shift)
+            assert mine == pytest.approx(sign * image, abs=1e-11 * np.abs(mine).max())
+        length = np.abs(one.gap).max()
+        assert (one.dx, one.rotation) == pytest.approx((-other.dx, -other.rotation), abs=1e-10 * length)
+        assert one.dissipation == pytest.approx(other.dissipation, rel=1e-9)
