@@ -125,24 +125,21 @@ def planned(case: fastpin.Case, spectrum: bool = False) -> cracks.Growth:
 
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
-def test_a_case_with_a_crack_is_told_by_every_command():
+def test_a_case_with_a_crack_has_its_growth():
+    """tests/whole/test_agreement.py holds the outputs against each other."""
     Path("case.toml").write_text(CASE)
     found = planned(fastpin.read_case("case.toml"))
     line = f"crack at 66.00 deg from the bottom: {found.words}"
-    assert line in printed("run", "case.toml")
     assert line in printed("run", "case.toml", "-o", "case.h5", "--json", "case.json")
     document = json.loads(Path("case.json").read_text())["crack"]
     assert document["life"] == pytest.approx(found.life, rel=1e-12)
     assert document["law"]["source"] == "own tests"
     assert (document["fate"], document["arrest"], document["angle_of_mouth"]) == ("grows", None, pytest.approx(66.0))
     assert fastpin.storage.stored_case("case.h5").crack == fastpin.read_case("case.toml").crack
-    assert line in printed("show", "case.h5")
-    assert line in printed("crack", "case.h5")
     assert "100 um to 1 mm, at 66 deg, walker, C = 1e-10" in printed("check", "case.toml")
     said("report", "case.h5", "-o", "page.html")
-    page = Path("page.html").read_text()
-    assert line[1:] in page
-    assert "Law of growth: walker, C = 1e-10, m = 3, exponent = 0.5 (SI units); source: own tests." in page
+    law = "Law of growth: walker, C = 1e-10, m = 3, exponent = 0.5 (SI units); source: own tests."
+    assert law in Path("page.html").read_text()
 
 
 @pytest.mark.gate

@@ -32,7 +32,8 @@ def _case():
 
 
 @pytest.mark.gate
-def test_a_case_with_a_strength_is_told_by_every_command():
+def test_a_case_with_a_strength_has_its_ratio_and_its_load_at_failure():
+    """tests/whole/test_agreement.py holds the outputs against each other."""
     case = fastpin.read_case("case.toml")
     states = fastpin.solve(case.problem, case.history, nodes=61)
     found = damage.joint_strength(states[0], "tsai-wu", distance=0.5e-3)
@@ -45,12 +46,10 @@ def test_a_case_with_a_strength_is_told_by_every_command():
     options = {"over": "history", "nodes": 61}
     failure = assess.failure_load(case.problem, case.history, "tsai-wu", distance=0.5e-3, **options)
     assert lines[1].startswith(f"load at failure: {failure.factor:.4g} times all loads; load point 1; at ")
-    assert lines[0] in printed("run", "case.toml", "-o", "case.h5", "--json", "case.json")
-    assert lines[0] in printed("show", "case.h5", "--json", "shown.json")
+    said("run", "case.toml", "-o", "case.h5", "--json", "case.json")
     document = json.loads(Path("case.json").read_text())
     jsonschema.validate(document, json_schema("run"))
     told = document["strength"]
-    assert told == json.loads(Path("shown.json").read_text())["strength"]
     assert (told["load_point"], told["states"], told["distance"]) == (1.0, 3, 0.5e-3)
     assert told["ratio"] == pytest.approx(found.least_ratio, rel=1e-12)
     assert told["failure"]["factor"] == pytest.approx(failure.factor, rel=1e-9)
@@ -59,13 +58,10 @@ def test_a_case_with_a_strength_is_told_by_every_command():
     assert "tsai-wu 500 um from the edge, with the load at failure" in printed("check", "case.toml")
     said("report", "case.h5", "-o", "page.html")
     page = Path("page.html").read_text()
-    assert lines[0][1:] in page
     assert lines[1][1:] in page
-    assert "Strength ratio of the first ply by tsai-wu" in page
     (row,) = [row for row in document["margins"] if "first ply" in row["subject"]]
     assert row["margin"] == pytest.approx(found.least_ratio - 1.0)
     assert row["load_point"] == 1.0
-    assert "plate: first ply by tsai-wu, factor on the stresses" in page
 
 
 @pytest.mark.gate

@@ -53,16 +53,6 @@ def test_states_are_steady_from_the_first_reversal_on_unless_strongly_conforming
         assert curve["second_forward_T"][0] < 0.2 * curve["first_reverse_T"][0]
 
 
-@pytest.mark.parametrize("load_parameter", [0.05, 0.5])
-def test_the_mirrored_history_is_the_mirror_image(load_parameter):
-    problem = held(load_parameter, 0.55)
-    right = memory.cycles(problem, 0.55, NODES)
-    corners = [{"P": 1.0}, *[{"Q": -0.55}, {"Q": 0.55}] * memory.CYCLES, {"Q": -0.55}]
-    left = solve(problem, corners, grid=right.grid)
-    for one, two in zip(right, left, strict=True):
-        assert np.abs(one.shear + two.shear[::-1]).max() < 1e-9
-
-
 @pytest.mark.parametrize(("load_parameter", "friction", "expected"), [(0.5, 0.55, 2.313), (1.0, 0.3, 1.308)])
 def test_at_the_onset_the_tractions_are_those_of_full_sliding(load_parameter, friction, expected):
     problem = held(load_parameter, friction)

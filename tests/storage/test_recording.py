@@ -28,7 +28,7 @@ from fastpin.storage.journal import journal_of
 from fastpin.storage.recording import record as follow
 from fastpin.storage.recording import resume, stored_case
 from fastpin.storage.writer import checkpoint_of, coarse_of
-from tests.support.interrupts import StopAt
+from tests.support.interrupts import StopAt, record_in_parts
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
 from tests.support.tiers import some_gate, some_survey
 
@@ -127,17 +127,9 @@ def test_an_interrupted_run_goes_on(problem, denser, path, corner):
 @pytest.mark.parametrize("stops", some_survey([1.75, 6.0], 1.75))
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_a_run_interrupted_again_and_again(problem, path, program, stops):
-    history, corner = PROGRAMS[program][: 12 if stops < 2.0 else 40], 3.0
+    history = PROGRAMS[program][: 12 if stops < 2.0 else 40]
     options = {"nodes": 61, "arc": (-3.0, -0.1), "between": 1 if stops < 2.0 else 0}
-    with pytest.raises(Interrupted):
-        follow(problem, history, path, progress=StopAt(corner), **options)
-    while True:
-        corner += stops
-        try:
-            resume(path, StopAt(corner))
-            break
-        except Interrupted:
-            continue
+    record_in_parts(problem, history, path, stops, **options)
     assert_file(path, solve(problem, history, **options))
 
 

@@ -11,15 +11,11 @@ from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.bodies.compliance import Compliance
 from fastpin.cracks import Nasgro
 from fastpin.errors import InputError
-from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.solver.errors import Interrupted
 from fastpin.storage.export import to_xarray
-from fastpin.storage.recording import record, resume, stored_case
 from fastpin.storage.store import load, save
 from tests.support.files import replaced
-from tests.support.interrupts import StopAt
 from tests.support.samples import PAIR, sample_result
 
 LAW = Nasgro(1e-10 / 3.0, 2.5, 1.0, 0.5, 1e6 / 3.0, 4e7, threshold_slope=-0.1, source="own tests")
@@ -81,21 +77,6 @@ def test_a_file_without_bodies_has_a_solid_pin_in_an_infinite_plate(path):
     save(sample_result(), path)
     found = load(path).problem
     assert (found.pin_body, found.plate_body) == (Disk(), Plate())
-
-
-@pytest.mark.gate
-@pytest.mark.parametrize("bodies", [BODIES[2], BODIES[5]], ids=["tube in ring", "bush"])
-def test_a_history_with_bodies_is_resumed(bodies, tmp_path):
-    first, whole = tmp_path / "a.h5", tmp_path / "b.h5"
-    history = LoadHistory([{"P": 2e6}, {"Q": 1e5}])
-    with pytest.raises(Interrupted):
-        record(problem(**bodies), history, first, nodes=61, arc=(-3.0, -0.1), progress=StopAt(1.0))
-    assert stored_case(first).problem == problem(**bodies)
-    resume(first)
-    record(problem(**bodies), history, whole, nodes=61, arc=(-3.0, -0.1))
-    assert load(first).problem == problem(**bodies)
-    for one, other in zip(load(first), load(whole), strict=True):
-        assert np.array_equal(one.pressure, other.pressure)
 
 
 def changed(place: str, name: str, value: Any) -> Any:

@@ -18,7 +18,7 @@ from fastpin.storage.layout import SLIP_FIELDS
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load, places_between
 from tests.support.files import replaced, written
-from tests.support.interrupts import StopAt
+from tests.support.interrupts import StopAt, record_in_parts
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
 from tests.support.tiers import gate, some_survey
 
@@ -29,17 +29,9 @@ RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
 @pytest.mark.parametrize("keep", some_survey(["all", "cycles", "every 7"], "cycles"))
 @pytest.mark.parametrize("program", [*gate("spectrum"), "two levels", "pressed again and again"])
 def test_a_run_interrupted_again_and_again(problem: Problem, path: Path, program: str, keep: str) -> None:
-    history, corner = PROGRAMS[program][:60], 3.0
+    history = PROGRAMS[program][:60]
     options: dict[str, Any] = {"nodes": 61, "arc": (-3.0, -0.1), "keep": keep, "slip_sums": True}
-    with pytest.raises(Interrupted):
-        record(problem, history, path, progress=StopAt(corner), **options)
-    while True:
-        corner += 11.0
-        try:
-            resume(path, StopAt(corner))
-            break
-        except Interrupted:
-            continue
+    record_in_parts(problem, history, path, 11.0, **options)
     found, expected = load(path), solve(problem, history, **options)
     assert_same(found, expected)
     assert known(found) == known(expected)

@@ -1,9 +1,18 @@
 """Interrupts at a given place of a history."""
 
+import contextlib
 import os
 import signal
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pytest
+
+from fastpin.model.history import LoadHistory
+from fastpin.model.problem import Problem
+from fastpin.solver.errors import Interrupted
+from fastpin.storage.recording import record, resume
 
 
 class StopAt:
@@ -16,3 +25,15 @@ class StopAt:
         if total > 1 and done >= self.corner:
             self.corner = np.inf
             os.kill(os.getpid(), signal.SIGINT)
+
+
+def record_in_parts(problem: Problem, history: LoadHistory, path: Path, stops: float, **options: Any) -> None:
+    """Record a history whose run is interrupted after three corners, and after each `stops` more."""
+    corner = 3.0
+    with pytest.raises(Interrupted):
+        record(problem, history, path, progress=StopAt(corner), **options)
+    while True:
+        corner += stops
+        with contextlib.suppress(Interrupted):
+            resume(path, StopAt(corner))
+            return

@@ -20,13 +20,12 @@ from fastpin.report.states import state_table
 from fastpin.report.summary import document
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.solving import solve
-from fastpin.storage.recording import record, resume
 from fastpin.studies.identity import canonical
 from fastpin.studies.plan import parse_plan
 from tests.support.checks.integral_equations import residuals_away
 from tests.support.checks.sliding import solve_sliding
 from tests.support.once import solve_once
-from tests.support.programs import assert_same, difference
+from tests.support.programs import difference
 from tests.support.samples import JOINT
 
 KINDS = [("centre", "free"), ("centre", "fixed"), ("body", "free")]
@@ -362,7 +361,7 @@ def case(tmp_path):
 
 
 @pytest.mark.gate
-def test_case_file_tables_and_files(case, tmp_path):
+def test_case_file_and_tables(case):
     assert (case.problem.drive, case.problem.gauge_radius, case.problem.hub_radius) == ("ux", 15e-3, 4e-3)
     assert "ux in place of Q over radius 0.015 m, hub of radius 0.004 m" in describe(case)
     assert "driven by ux over radius 0.015" in repr(case.problem)
@@ -374,31 +373,6 @@ def test_case_file_tables_and_files(case, tmp_path):
     assert (found["problem"]["drive"], found["problem"]["gauge_radius"]) == ("ux", 15e-3)
     assert found["states"][-1]["load"]["ux"] == -1e-6
     assert found["states"][-1]["load"]["Q"] == pytest.approx(result[-1].resultants["Q"])
-    path = tmp_path / "case.h5"
-    record(case.problem, case.history, path, **case.options.keywords())
-    loaded = fastpin.load(path)
-    assert loaded.problem == case.problem
-    assert [state.load for state in loaded] == [state.load for state in result]
-    assert_same(loaded, result)
-    half = solve(case.problem, case.history[:4], grid=result.grid)
-    rest = solve(case.problem, case.history[4:], start=half)
-    assert np.array_equal(rest[-1].shear, result[-1].shear)
-    assert rest[-1].load == result[-1].load
-
-
-def test_interrupted_and_resumed(case, tmp_path):
-    path, seen = tmp_path / "case.h5", []
-
-    def stop(done, total):
-        seen.append(done)
-        if done > 5.0 and path.exists():
-            raise KeyboardInterrupt
-
-    whole = solve(case.problem, case.history, **case.options.keywords())
-    with pytest.raises(KeyboardInterrupt):
-        record(case.problem, case.history, path, progress=stop, **case.options.keywords())
-    resume(path)
-    assert_same(fastpin.load(path), whole)
 
 
 def test_error_bars(case):

@@ -9,13 +9,11 @@ import pytest
 from docs.beyond import rigid_pin
 from docs.beyond.figures import FIGURES
 from fastpin.assess.outputs import Curve
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.published import catalog, half_plane
 from fastpin.published.records import PaperFigure
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
-from tests.support.programs import assert_same_bits
 from tests.support.tiers import gate
 
 
@@ -193,25 +191,6 @@ def test_the_sign_of_beta_decides_how_far_unlike_half_planes_reach():
 
 
 # --- rigid pins ----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "history",
-    [
-        [{"P": 1.0}],
-        [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}, {"Q": 0.2}],
-        [{"P": 1.0, "sxx": 0.3}, {"Q": 0.1, "syy": -0.2}, {"P": 0.4}, {"P": 1.0}],
-    ],
-    ids=["monotonic", "fretting", "remote"],
-)
-def test_a_rigid_pin_does_not_tell_its_loads(history):
-    """Equal in every bit."""
-    pair = MaterialPair(Material.rigid(), MATERIALS["aluminium"])
-    centre, body = (
-        solve(Problem.from_load_parameter(pair, 0.1, 0.4, pin_load), history, nodes=121) for pin_load in rigid_pin.LOADS
-    )
-    assert np.array_equal(centre.grid.theta, body.grid.theta)
-    assert_same_bits(centre, body)
 
 
 @pytest.mark.gate

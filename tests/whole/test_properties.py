@@ -7,7 +7,6 @@ import pytest
 
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from tests.support.tiers import gate, seeds
@@ -68,26 +67,6 @@ def test_loads_and_clearance_scale_together(titanium_in_aluminium):
         assert np.allclose(3.0 * one.slip, three.slip, rtol=1e-9, atol=1e-9 * np.abs(three.slip).max())
         assert three.rotation == pytest.approx(3.0 * one.rotation, rel=1e-8, abs=1e-15)
         assert three.dissipation == pytest.approx(9.0 * one.dissipation, rel=1e-8)
-
-
-def test_without_friction_centre_and_body_loads_give_the_same_pressure(titanium_in_aluminium):
-    centre, body = (
-        solve(Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.0, load), HISTORY, nodes=101, arc=ARC)
-        for load in ("centre", "body")
-    )
-    for one, two in zip(centre, body, strict=True):
-        assert np.abs(one.pressure - two.pressure).max() < 1e-11
-
-
-def test_steady_cycles_repeat(similar):
-    """With fixed rotation the second forward state is the steady one (section 5.3); it repeats to rounding."""
-    problem = Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed")
-    result = solve(problem, LoadHistory.cycles({"P": 1.0}, {"Q": 0.275}, 5), nodes=121)
-    assert np.abs(result[3].shear - result[1].shear).max() > 1e-3
-    for state in result[5::2]:
-        assert np.abs(state.shear - result[3].shear).max() < 1e-11
-    per_cycle = [b.dissipation - a.dissipation for a, b in zip(result[3::2], result[5::2], strict=False)]
-    assert np.ptp(per_cycle) < 1e-9 * per_cycle[0]
 
 
 def test_graded_nodes_give_the_same_answer(similar):

@@ -1,11 +1,13 @@
 """What holds for every kind of joint: the balance of energy, increments, mirror images, and histories in parts."""
 
 import math
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
+import fastpin
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.loads import Corner
@@ -13,12 +15,14 @@ from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
+from fastpin.solver.errors import Interrupted
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from tests.support.bodies import JOINTS, UNLIKE, joint_problem
+from tests.support.interrupts import StopAt
 from tests.support.joints import joint
 from tests.support.laminates import STEEL, TURNED
-from tests.support.programs import assert_same_bits
+from tests.support.programs import assert_same, assert_same_bits
 from tests.support.tiers import some_gate
 
 FRETTED: list[Corner] = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"P": 0.6, "Q": 0.1}]
@@ -116,6 +120,19 @@ def test_a_history_in_parts_has_the_same_bits(name: str, options: dict[str, Any]
     first = kind.solved(corners=kind.corners[:2], **options)
     second = solve(kind.problem, kind.corners[2:], start=first, **options)
     assert_same_bits(whole, [*first, *second])
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("name", KINDS)
+def test_a_stored_history_is_resumed_to_the_same_bits(name: str, tmp_path: Path) -> None:
+    kind, path = KINDS[name], tmp_path / "a.h5"
+    whole = kind.solved()
+    with pytest.raises(Interrupted):
+        fastpin.record(kind.problem, kind.corners, path, grid=whole.grid, progress=StopAt(1.5))
+    fastpin.resume(path)
+    found = fastpin.load(path)
+    assert found.problem == kind.problem
+    assert_same(found, whole)
 
 
 @pytest.mark.parametrize("name", [name for name in KINDS if name not in UNEVEN])
