@@ -240,9 +240,10 @@ def scaled(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid: 
     bodies = (Material(body.E * modulus, body.nu) for body in (pair.pin, pair.plate))
     displacement = factor * radius / modulus
     hub = None if problem.hub_radius is None else problem.hub_radius * radius
+    spring = None if problem.hub_stiffness is None else problem.hub_stiffness * radius**2 * modulus
     new_problem = replace(
         problem, pair=MaterialPair(*bodies, pair.plane), hole_radius=problem.hole_radius * radius,
-        clearance=problem.clearance * displacement, hub_radius=hub,
+        clearance=problem.clearance * displacement, hub_radius=hub, hub_stiffness=spring,
         pin_body=enlarged(problem.pin_body, radius, modulus, displacement),
         plate_body=enlarged(problem.plate_body, radius, modulus, displacement),
         gap=enlarged_gap(problem.gap, displacement),

@@ -94,20 +94,6 @@ def test_without_friction_the_spring_carries_nothing(titanium_in_aluminium):
     assert (state.rotation, state.resultants["M"]) == pytest.approx((0.1, 0.0), abs=1e-12)
 
 
-def test_si_units(titanium_in_aluminium):
-    """Moment and rotation in SI units are those of the dimensionless problem, with k in R^2/beta*."""
-    radius, force, beta = 10e-3, 1e6, titanium_in_aluminium.beta_star
-    small = solve(joint(titanium_in_aluminium, "spring", 0.4, 0.3), HISTORY, nodes=61)
-    clearance, hub, stiffness = 0.3 * force * beta, 0.4 * radius, 0.3 * radius**2 / beta
-    problem = Problem(
-        titanium_in_aluminium, radius, clearance, 0.4, "centre", "spring", hub, hub_stiffness=stiffness
-    )  # fmt: skip
-    large = solve(problem, [{k: force * v for k, v in corner.items()} for corner in HISTORY], nodes=61)
-    for one, two in zip(small, large, strict=True):
-        assert two.resultants["M"] == pytest.approx(one.resultants["M"] * force * radius, abs=1e-10 * force * radius)
-        assert two.rotation == pytest.approx(one.rotation * force * beta / radius, abs=1e-10 * force * beta / radius)
-
-
 # --- what is asked for, and where it is shown ---------------------------------------------------------------
 
 

@@ -93,22 +93,6 @@ def test_a_constant_is_an_interference_too():
     assert most_different(*states) < 1e-12
 
 
-def test_an_ellipse_and_its_loads_turn_together():
-    """45 degrees are 15 of 120 nodes; measured: 4e-14."""
-    straight = Problem.from_load_parameter(LIKE, 0.1, 0.3, "body", gap=InitialGap(Profile.ellipse(0.02)))
-    turned = Problem.from_load_parameter(LIKE, 0.1, 0.3, "body", gap=InitialGap(Profile.ellipse(0.02, math.pi / 4.0)))
-    force = [complex(corner[0], corner[1]) for corner in [(0.0, -1.0), (0.2, -1.0), (-0.2, -0.6)]]
-    turn = complex(math.cos(math.pi / 4.0), math.sin(math.pi / 4.0))
-    ones, others = (
-        solve(problem, [{"P": -(factor * f).imag, "Q": (factor * f).real} for f in force], grid=CIRCLE)
-        for problem, factor in ((straight, 1.0), (turned, turn))
-    )
-    for one, other in zip(ones, others, strict=True):
-        for name in ("pressure", "shear", "slip"):
-            size = np.abs(getattr(one, name)).max()
-            assert np.roll(getattr(one, name), 15) == pytest.approx(getattr(other, name), abs=2e-12 * size)
-
-
 # --- the table of reference --------------------------------------------------------------------------------------
 
 G = {

@@ -11,14 +11,12 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.bodies import Plate
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
-from tests.support.bodies import joint_problem
 from tests.support.checks.sliding import solve_sliding
 from tests.support.once import solve_once
 
@@ -32,13 +30,6 @@ HISTORY = [
 ANGLES = [0.3, 1.0, -2.2, 0.5 * math.pi, math.pi]
 KINDS = [("centre", "free"), ("centre", "fixed"), ("body", "free")]
 ARC = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 141)
-SHORT = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 121)
-WIDE = Grid.arc(BOTTOM - 2.3, BOTTOM + 2.3, 121)
-
-
-@functools.cache
-def round_joint(name):
-    return joint_problem(name, 0.3, 0.4)
 
 
 def turned(history, angle):
@@ -96,36 +87,6 @@ def test_any_angle_on_an_arc(titanium_in_aluminium, pin_load, rotation, angle):
         history[1]["M"] = 0.05
     one = solve_once(problem, history, grid=ARC, between=1)
     two = solve(problem, turned(history, angle), grid=turned_grid(ARC, angle), between=1)
-    assert_turned(one, two, angle, 1e-10)
-
-
-@pytest.mark.parametrize("parameter", [0.0, -0.05], ids=["neat", "interference"])
-def test_any_angle_on_the_circle(titanium_in_aluminium, parameter):
-    problem = Problem.from_load_parameter(titanium_in_aluminium, parameter, 0.4, "body", "free")
-    grid = Grid.circle(120, -1.5 * math.pi)
-    one = solve(problem, HISTORY, grid=grid)
-    two = solve(problem, turned(HISTORY, 0.7), grid=turned_grid(grid, 0.7))
-    assert_turned(one, two, 0.7, 1e-9)
-
-
-@pytest.mark.parametrize("angle", ANGLES[:3])
-@pytest.mark.parametrize("name", ["tube", "tube in a ring", "tube, bush, ring", "ring, compliance"])
-def test_any_angle_with_round_bodies(name, angle):
-    """The bodies, and the stresses on their rims, know no direction: also through the matrix of a compliance."""
-    one = solve_once(round_joint(name), HISTORY, grid=WIDE)
-    two = solve(round_joint(name), turned(HISTORY, angle), grid=turned_grid(WIDE, angle))
-    assert_turned(one, two, angle, 1e-9)
-
-
-@pytest.mark.parametrize("angle", ANGLES[:3])
-def test_a_reaction_turns_with_its_point(titanium_in_aluminium, angle):
-    place = complex(0.7, 2.5)
-    points = [(place.real, place.imag)]
-    moved = place * cmath.exp(1j * angle)
-    points.append((moved.real, moved.imag))
-    first, second = (Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, plate_body=Plate(p)) for p in points)
-    one = solve_once(first, HISTORY, grid=SHORT)
-    two = solve(second, turned(HISTORY, angle), grid=turned_grid(SHORT, angle))
     assert_turned(one, two, angle, 1e-10)
 
 

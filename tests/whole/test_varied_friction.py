@@ -17,7 +17,6 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification.finite_elements import LIKE, UNLIKE
-from tests.support.checks.integral_equations import residuals_away
 from tests.support.checks.sliding import solve_sliding
 from tests.support.programs import assert_same_bits
 from tests.support.tiers import some_gate
@@ -109,20 +108,6 @@ def test_friction_where_nothing_touches_has_no_effect() -> None:
     for one, other in zip(plain, found, strict=True):
         assert np.array_equal(one.pressure, other.pressure)
         assert np.array_equal(one.shear, other.shear)
-
-
-def test_a_mirrored_friction_has_mirrored_states() -> None:
-    """The wave of M1 changes its sign."""
-    grid, turned = Grid.circle(120, BOTTOM), [{**each, "Q": -each.get("Q", 0.0)} for each in FRETTED]
-    mirror = -np.arange(120) % 120
-    mirrored = replace(PROBLEMS["M1"], friction=wave(0.35, 3, 0.0, -0.2))
-    ones, others = (
-        solve(PROBLEMS["M1"], [{"Q": 0.0, **each} for each in FRETTED], grid=grid),
-        solve(mirrored, turned, grid=grid),
-    )
-    for one, other in zip(ones, others, strict=True):
-        assert one.pressure == pytest.approx(other.pressure[mirror], abs=2e-12)
-        assert one.shear == pytest.approx(-other.shear[mirror], abs=2e-12)
 
 
 def test_methods_for_one_number_refuse_it() -> None:
