@@ -540,13 +540,17 @@ def dissipation_error(states: Sequence[State], integral: float) -> float:
 
 
 def _dissipated(states: Sequence[State]) -> float:
-    """int -T ds by the trapezoidal rule, with the slip since the state before also where contact begins or ends.
+    """int -T ds by the trapezoidal rule, with the slip since the state before also where nodes close or open.
 
-    The sum over all interfaces.
+    The sum over all interfaces. Two states of which one has no contact say nothing of the way between them: there the
+    dissipation of the states themselves counts.
     """
     total = 0.0
     for some in interfaces_of(states):
         weights = some[0].problem.hole_radius * some[0].grid.weights
-        for _, before, after in _held(some):
-            total -= 0.5 * float(weights @ ((after.slip - before.slip) * (before.shear + after.shear)))
+        lost = [state.dissipation - (state.seat.dissipation if state.seat else 0.0) for state in some]
+        gains = np.diff(lost, prepend=0.0)
+        for place, before, after in _held(some):
+            gains[place] = -0.5 * float(weights @ ((after.slip - before.slip) * (before.shear + after.shear)))
+        total += float(gains.sum())
     return total
