@@ -13,6 +13,7 @@ from fastpin import cracks, damage
 from fastpin.assess.crack import growth_line
 from fastpin.casefile import case_text
 from fastpin.report import json_schema
+from tests.support.case_texts import IN_CYCLES
 from tests.support.commands import printed, refused, said
 
 jsonschema = pytest.importorskip("jsonschema")
@@ -97,19 +98,7 @@ def test_a_result_without_a_cycle():
     assert words in refused("crack", "joint.h5", *LAW)
 
 
-CASE = """
-pin.material = "steel"
-plate = { E = 70e9, nu = 0.33, growth = { law = "walker", C = 1e-10, m = 3, exponent = 0.5, source = "own tests" } }
-[contact]
-hole_radius = 10e-3
-clearance = 20e-6
-friction = 0.3
-[[load]]
-P = [3e6, 3e5]
-repeat = 2
-[solve]
-nodes = 61
-[crack]
+CASE = f"""{IN_CYCLES}[crack]
 first = 1e-4
 last = 1e-3
 theta = 66

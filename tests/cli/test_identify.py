@@ -13,30 +13,15 @@ from fastpin.report import identify as report
 from fastpin.report import json_schema
 from fastpin.studies.identification import FittedValue, Identified
 from fastpin.studies.measured_loop import measured_loop
+from tests.support.case_texts import IN_A_RIG
 from tests.support.commands import refused, said
 from tests.support.loops import THICKNESS, Measured, joint
 
 jsonschema = pytest.importorskip("jsonschema")
 
-CASE = """
-title = "fretting rig"
-[pin]
-material = "Ti-6Al-4V"
-[plate]
-material = "Ti-6Al-4V"
-[contact]
-hole_radius = 5e-3
-clearance = 30e-6
-thickness = 8e-3
-friction = 0.5
-pin_load = "centre"
-rotation = "fixed"
-drive = "ux"
-gauge_radius = 20e-3
-hub_radius = 2e-3
-[[load]]
-P = 6000
-"""
+CASE = 'title = "fretting rig"\n' + IN_A_RIG.replace(
+    "[[load]]", "thickness = 8e-3\ngauge_radius = 20e-3\nhub_radius = 2e-3\n[[load]]"
+)
 LOOP = Measured(80e-6, 60, 0.005, cycles=1.3)
 
 

@@ -11,7 +11,7 @@ import fastpin
 from fastpin import damage
 from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.damage.counted import CountedMaterial, Spectrum
-from fastpin.damage.histories import different_states, history_blocks
+from fastpin.damage.histories import history_blocks
 from fastpin.damage.lives import smith_watson_topper_life
 from fastpin.errors import InputError
 from fastpin.model import FatigueConstants
@@ -195,22 +195,6 @@ def test_a_brute_search_finds_no_worse_plane():
         assert found == pytest.approx(searched(history[:, 0], plane), rel=1e-9)
 
 
-def test_a_plane_of_turning_stresses_is_counted_as_by_pylife():
-    for seed in seeds(10):
-        rng = np.random.default_rng(seed)
-        history = rng.uniform(-2e8, 3e8, (25, 1, 4))
-        history[..., 2] = 0.33 * (history[..., 0] + history[..., 1])
-        counted, spectrum = CountedMaterial.of(SWT, MATERIAL, None, "plate"), Spectrum.of(np.arange(25))
-        (found,), (plane,) = counted.worst(history, spectrum)
-        scanned = [counted.cycles(history, spectrum, x)[1][:, 2].sum() for x in np.radians(np.arange(0.0, 180.0, 2.5))]
-        assert found >= max(scanned) * (1.0 - 1e-12)
-        assert found == pytest.approx(counted.cycles(history, spectrum, plane)[1][:, 2].sum(), rel=1e-12)
-        _, strain = on_plane(history[:, 0], plane)
-        places, _ = counted.cycles(history, spectrum, plane)
-        ranges = np.abs(strain[places[:, 0]] - strain[places[:, 1]])
-        np.testing.assert_allclose(np.sort(ranges), np.sort(damage.rainflow(strain).range), rtol=1e-9, atol=1e-12)
-
-
 def test_blocks_of_a_spectrum():
     spectrum = Spectrum.of(np.array([9, *[0, 1, 0, 2] * 5, 0, 3, 3, *[4, 5] * 4, 6]))
     assert spectrum.blocks.tolist() == [[0, 1, 1], [1, 5, 5], [5, 8, 1], [8, 10, 4], [10, 11, 1]]
@@ -251,22 +235,6 @@ def test_the_damage_of_a_result(fretting):
     assert pickle.loads(pickle.dumps(found)).hot_spot == spot
     tripled = damage.spectrum_damage(list(fretting) * 5)
     np.testing.assert_allclose(tripled.damage, 5.0 * found.damage, rtol=1e-6)
-
-
-def test_a_repeated_block_enters_with_its_number():
-    """Hundreds of equal cycles are one block; their damage is that of all stops one by one."""
-    history = fastpin.LoadHistory([{"P": 2.4e6}]) + fastpin.LoadHistory([{"Q": 6e5}, {"Q": -6e5}]).repeated(300)
-    states = list(fastpin.solve(problem_of(pin_load="body"), history, nodes=61))
-    order = different_states(states, True)[1]
-    assert len(order) == 601
-    assert Spectrum.of(order).order.size < 20
-    found = damage.spectrum_damage(states, straight=True)
-    assert found.cycles.times.max() > 280
-    at = int(np.argmax(found.damage))
-    history = damage.stress_history(states, fastpin.Points.at_depth(0.0, found.theta[at : at + 1]), straight=True)
-    counted = CountedMaterial.of(SWT, MATERIAL, None, "plate")
-    every = Spectrum(np.arange(601), np.array([[0, 601, 1]]))
-    assert found.damage[at] == pytest.approx(counted.worst(history, every)[0][0], rel=1e-9)
 
 
 @pytest.mark.gate

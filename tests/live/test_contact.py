@@ -26,6 +26,7 @@ from fastpin.states.curves import traction_patches
 from fastpin.states.state import State
 from tests.support.checks.body_cases import ring_compliance
 from tests.support.live_pages import FREE, NODES, Page, contact, floats, solved
+from tests.support.seats import TEXT as BUSH_SLIPS
 from tests.support.tiers import some_survey
 
 P, Q = 2.42e6, 7.26e5
@@ -52,6 +53,17 @@ def assert_shown(picture: dict, state: State) -> None:
     assert (picture["peak_pressure"], picture["dissipation"]) == (state.peak_pressure, state.dissipation)
     for name in ("pressure", "shear", "gap"):
         assert np.array_equal(floats(picture[name]), getattr(state, name).astype("<f4"))
+    if (seat := state.seat) is None:
+        assert picture["seat"] is None
+        return
+    shown = picture["seat"]
+    assert (shown["rotation"], shown["dissipation"], shown["peak_slip"]) == (
+        seat.rotation,
+        seat.dissipation,
+        seat.peak_slip,
+    )
+    assert len(shown["stick"]) == len(seat.stick)
+    assert shown["frictionless"] is False
 
 
 def test_a_page_begins_with_the_first_corner_of_the_case() -> None:
@@ -63,8 +75,9 @@ def test_a_page_begins_with_the_first_corner_of_the_case() -> None:
     json.dumps(page.latest, allow_nan=False)
 
 
-def test_a_drag_has_the_states_of_solve_bit_by_bit() -> None:
-    page = Page(contact())
+@pytest.mark.parametrize("text", [None, BUSH_SLIPS], ids=["built in", "bush that slips"])
+def test_a_drag_has_the_states_of_solve_bit_by_bit(text: str | None) -> None:
+    page = Page(contact(text))
     drag(page, 5)
     page.tell("load", loads={"Q": -Q}, gesture=6)
     session = page.live.session
@@ -75,6 +88,10 @@ def test_a_drag_has_the_states_of_solve_bit_by_bit() -> None:
     last = result[-1]
     for name in ("pressure", "shear", "gap", "slip", "status"):
         assert np.array_equal(getattr(session.state, name), getattr(last, name))
+    if text is not None:
+        assert np.array_equal(session.state.seat.slip, last.seat.slip)
+        assert last.seat.rotation != 0.0
+        json.dumps(page.latest, allow_nan=False)
 
 
 def test_the_same_load_in_two_ways_has_two_shears() -> None:
@@ -96,15 +113,17 @@ def test_the_same_load_in_two_ways_has_two_shears() -> None:
 
 
 @pytest.mark.gate
-def test_undo_takes_back_a_gesture_and_redo_brings_it_again() -> None:
-    page = Page(contact())
+@pytest.mark.parametrize("text", [None, BUSH_SLIPS], ids=["built in", "bush that slips"])
+def test_undo_takes_back_a_gesture_and_redo_brings_it_again(text: str | None) -> None:
+    page = Page(contact(text))
+    friction = page.live.session.problem.friction
     drag(page, 5, 6)
     after_drag = page.pictures
     page.tell("load", loads={"Q": -Q}, gesture=6)
-    page.tell("change", changes={"friction": 0.2}, gesture=7)
+    page.tell("change", changes={"friction": 0.25}, gesture=7)
     assert (page.latest["undos"], len(page.pictures)) == (3, 1)
     page.tell("undo")
-    assert page.latest["case"]["friction"] == 0.4
+    assert page.latest["case"]["friction"] == friction
     page.tell("undo")
     assert page.pictures == after_drag
     page.tell("undo")
@@ -171,6 +190,31 @@ def test_bodies_and_materials_can_be_changed() -> None:
     page.tell("change", changes={"plate_body": "plate"})
     assert not page.live.session.problem.has_bodies
     assert page.latest["case"]["plate"] == "plate"
+
+
+SEAT = [
+    ({"friction": 0.3}, True), ({"outer_radius": 0.013}, True), ({"interference": 1e-5}, True),
+    ({"bush_E": 9e10}, True), ({"seat_friction": 0.3}, True), ({"rotation": "fixed"}, True),
+    ({"plate_body": "plate"}, False),
+]  # fmt: skip
+"""Changes of a joint whose bush slips, and whether there is a seat after them."""
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize(("changes", "slips"), SEAT)
+def test_changes_of_the_problem_keep_the_bush_slipping(changes: dict[str, object], slips: bool) -> None:
+    page = Page(contact(BUSH_SLIPS))
+    answer = page.tell("change", changes=changes, follow="history", gesture=3)
+    assert answer["kind"] == "pictures", answer
+    assert (page.live.session.problem.seat is not None) == slips
+    assert (page.pictures[-1]["seat"] is not None) == slips
+
+
+def test_friction_is_not_followed_in_a_bush_that_slips() -> None:
+    session = fastpin.Session(contact(BUSH_SLIPS).session.problem, NODES)
+    session.advance({"P": P})
+    with pytest.raises(fastpin.InputError, match='replay: "follow" needs a bush that is bonded'):
+        session.change(friction=0.25, replay="follow")
 
 
 VARIED = FREE.replace("friction = 0.3\n", "friction = [{ constant = 0.2 }, { zone = 0.2, start = -30, stop = 30 }]\n")

@@ -10,26 +10,10 @@ from fastpin.errors import CaseFileError, InputError
 from fastpin.model.history import LoadHistory
 from fastpin.model.recorded import turning_corners, with_last_cycle
 from fastpin.solver.solving import solve
+from tests.support.case_texts import IN_A_RIG
 from tests.support.loops import joint
 
-CASE = """
-[pin]
-material = "Ti-6Al-4V"
-[plate]
-material = "Ti-6Al-4V"
-[contact]
-hole_radius = 5e-3
-clearance = 30e-6
-friction = 0.5
-pin_load = "centre"
-rotation = "fixed"
-drive = "ux"
-[[load]]
-P = 6e5
-[[load]]
-csv = "rig.csv"
-ux = "way [um]"
-"""
+CASE = IN_A_RIG.replace("6000", "6e5") + '[[load]]\ncsv = "rig.csv"\nux = "way [um]"\n'
 
 
 def write_loop(folder: Path, samples: int = 12, cycles: float = 3.0, noise: float = 0.0) -> Path:

@@ -235,23 +235,15 @@ def to_rounding(state: State) -> Any:
 
 
 @pytest.mark.gate
-def test_run_shows_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", str(case), "--nodes", "101", "--error-bars"]) == 0
-    line = capsys.readouterr().out.splitlines()[3]
-    assert line.count("+-") == 8
-    assert main(["run", str(case), "--nodes", "101", "--error-bars", "--json"]) == 0
-    state = json.loads(capsys.readouterr().out)["states"][-1]
+def test_runs_and_their_files_show_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, document = (str(case.parent / name) for name in ("a.h5", "a.json"))
+    assert main(["run", str(case), "--nodes", "101", "--error-bars", "-o", path, "--json", document]) == 0
+    table = capsys.readouterr().out.splitlines()[:-1]
+    assert table[3].count("+-") == 8
+    state = json.loads(Path(document).read_text())["states"][-1]
     assert 0.0 < state["error_bars"]["contact_1_start"] < 3.0  # degrees
     assert set(state["error_bars"]) > WITH_BARS
     assert set(QUANTITIES) - {"P", "Q", "M"} <= set(state)
-
-
-@pytest.mark.gate
-def test_files_of_runs_show_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = str(case.parent / "a.h5")
-    assert main(["run", str(case), "--nodes", "101", "--error-bars", "-o", path]) == 0
-    table = capsys.readouterr().out.splitlines()[:-1]
-    assert table[3].count("+-") == 8
     assert main(["show", path]) == 0
     assert capsys.readouterr().out.splitlines()[:-1] == table
     assert main(["run", str(case), "--error-bars", "--nodes", "99", "-o", path, "--overwrite"]) == 2

@@ -11,28 +11,14 @@ from fastpin.cli.main import main
 from fastpin.cracks import CrackFate
 from fastpin.errors import CaseFileError
 from fastpin.studies import read_plan, sweep
+from tests.support.case_texts import IN_CYCLES
 from tests.support.faults import fault_of
 
-CASE = """
-[pin]
-material = "steel"
-[plate]
-E = 70e9
-nu = 0.33
-[contact]
-hole_radius = 10e-3
-clearance = 20e-6
-friction = 0.3
-[[load]]
-P = [3e6, 3e5]
-repeat = 2
-[solve]
-nodes = 61
-[crack]
+CASE = f"""{IN_CYCLES}[crack]
 first = 1e-4
 last = 3e-3
 theta = 66
-law = { law = "walker", C = 1e-10, m = 3, exponent = 0.5, threshold_range = 2e6, toughness = 11e6 }
+law = {{ law = "walker", C = 1e-10, m = 3, exponent = 0.5, threshold_range = 2e6, toughness = 11e6 }}
 """
 
 PLAN = """case = "case.toml"

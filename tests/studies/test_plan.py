@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +15,8 @@ from fastpin.model.loads import LOADS
 from fastpin.studies import plan
 from fastpin.studies.identity import canonical, run_id
 from fastpin.studies.plan import parse_plan, read_plan
+from tests.support.bodies import soft_plate
+from tests.support.body_texts import HEAD
 from tests.support.processes import finished, python
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -125,12 +126,40 @@ def test_a_plan_reads_a_case_once_unless_there_are_too_many(monkeypatch: pytest.
     assert [plan.case(point).problem.friction for point in (first, second, third)] == [0.1, 0.2, 0.3]
 
 
-@pytest.mark.parametrize("change", [lambda path: path.write_text("P\n2\n"), Path.unlink], ids=["changed", "gone"])
-def test_loads_that_change_after_the_plan_was_read_are_not_run(change: Callable[[Path], None], tmp_path: Path) -> None:
-    for name in ("a", "b"):
-        (tmp_path / f"{name}.csv").write_text("P\n1\n")
-    plan = parse_plan('[grid]\nhistory.csv = ["a.csv", "b.csv"]\ncontact.friction = [0.2]\n', folder=tmp_path)
-    change(tmp_path / "a.csv")
+READ = {
+    "loads": ("a.csv", 'history.csv = ["a.csv", "b.csv"]', EXAMPLE, "P\n1\n", "P\n2\n"),
+    "samples of a gap": (
+        "a.csv",
+        "contact.friction = [0.1]",
+        HEAD + '[gap]\nhole = "a.csv"\n',
+        "x,g\n0,0\n90,1e-6\n180,0\n270,1e-6\n",
+        "x,g\n0,0\n90,2e-6\n180,0\n270,1e-6\n",
+    ),
+    "a compliance": (
+        "a.json",
+        'plate_body.file = ["a.json"]',
+        HEAD,
+        soft_plate().to_text(),
+        soft_plate(0.125).to_text(),
+    ),
+}
+"""A file, the axis of the plan, the case, and the text of the file before and after a change."""
+
+
+@pytest.mark.parametrize("name", READ)
+@pytest.mark.parametrize("gone", [False, True])
+def test_a_file_that_changes_after_the_plan_was_read_is_not_run(name: str, gone: bool, tmp_path: Path) -> None:
+    file_name, axis, case, before, after = READ[name]
+    file = tmp_path / file_name
+    for each in (file, tmp_path / "b.csv"):
+        each.write_text(before)
+    (tmp_path / "case.toml").write_text(case)
+    plan = parse_plan(f'case = "case.toml"\n[grid]\n{axis}\n', folder=tmp_path)
+    assert plan.case(plan.points[-1])
+    if gone:
+        file.unlink()
+    else:
+        file.write_text(after)
     with pytest.raises(InputError, match="files of its loads, bodies or materials have changed"):
         plan.case(plan.points[0])
 

@@ -84,17 +84,6 @@ def test_a_list_needs_the_number_of_the_term(tmp_path: Path, field: str, words: 
     assert words in fault_of(plan, tmp_path, f"[grid]\ncontact.{field}.zone = [0.1]\n", ZONES)[1]
 
 
-def test_a_changed_file_of_samples_is_noticed(tmp_path: Path) -> None:
-    """A plan keeps no case whose file may change."""
-    file = tmp_path / "hole.csv"
-    file.write_text("x,g\n0,0\n90,1e-6\n180,0\n270,1e-6\n")
-    found = plan(tmp_path, "[grid]\ncontact.friction = [0.1]\n", PRESSED + '\n[gap]\nhole = "hole.csv"\n')
-    assert found.case(found.points[0]).problem.gap
-    file.write_text("x,g\n0,0\n90,2e-6\n180,0\n270,1e-6\n")
-    with pytest.raises(Exception, match="have changed since the plan was read"):
-        found.case(found.points[0])
-
-
 def test_axes_have_words_and_units() -> None:
     assert field_words("gap.hole.ellipse") == "oval of the hole"
     assert field_words("contact.friction.2.stop") == "stop (deg) of the friction, term 2"

@@ -51,6 +51,38 @@ nodes = 31
 """
 """A pin that a repeated force Q moves in a sheet, with a section of fatigue."""
 
+IN_CYCLES = """
+pin.material = "steel"
+plate = { E = 70e9, nu = 0.33, growth = { law = "walker", C = 1e-10, m = 3, exponent = 0.5, source = "own tests" } }
+[contact]
+hole_radius = 10e-3
+clearance = 20e-6
+friction = 0.3
+[[load]]
+P = [3e6, 3e5]
+repeat = 2
+[solve]
+nodes = 61
+"""
+"""A steel pin in a plate with a law of growth, under a force that rises and falls."""
+
+IN_A_RIG = """
+[pin]
+material = "Ti-6Al-4V"
+[plate]
+material = "Ti-6Al-4V"
+[contact]
+hole_radius = 5e-3
+clearance = 30e-6
+friction = 0.5
+pin_load = "centre"
+rotation = "fixed"
+drive = "ux"
+[[load]]
+P = 6000
+"""
+"""A titanium pin that a rig drives along x, pressed down."""
+
 STEEL_IN_LAMINATE = """\
 pin.material = "steel"
 plate = { layup = "[0/45/-45/90]2s", ply = "T300/914" }

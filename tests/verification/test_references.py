@@ -55,31 +55,35 @@ def test_monotonic_reference_values(similar, titanium_in_aluminium):
             assert 0.5 * np.ptp(state.stick[0]) == pytest.approx(stick, abs=1e-3)
 
 
-@pytest.mark.gate
-def test_fretting_with_fixed_rotation_reference_values(similar):
-    result = solve(Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed"), CYCLE, nodes=601)
-    peaks = [0.91864, 0.93755, 0.94690, 0.94671, 0.94690]
-    shears = [0.1385, -0.4095, 0.4046, -0.402, 0.4046]
-    integrals = [0.0, -0.213796, 0.220463, -0.219292, 0.220463]
-    for state, peak, shear, integral in zip(result, peaks, shears, integrals, strict=True):
-        assert state.peak_pressure == pytest.approx(peak, abs=2e-5)
-        assert abs(state.peak_shear) == pytest.approx(abs(shear), abs=1e-3)  # theirs are nodal maxima
-        assert shear * state.peak_shear > 0.0 or integral == 0.0
-        assert -state.resultants["M"] == pytest.approx(integral, abs=4e-6)
+FRETTING = {
+    "fixed": (
+        (0.5, 0.55, "centre", "fixed"), "M", 4e-6,
+        [0.91864, 0.93755, 0.94690, 0.94671, 0.94690],
+        [0.1385, -0.4095, 0.4046, -0.402, 0.4046],
+        [0.0, 0.213796, -0.220463, 0.219292, -0.220463],
+    ),
+    "free": (
+        (0.05, 0.55, "body", "free"), "rotation", 6e-5,
+        [0.46529, 0.50477, 0.55305, 0.54587, 0.55164],
+        [0.2272, -0.2347, 0.2309, -0.2228, 0.2312],
+        [0.0, -0.0250, 0.0357, -0.0325, 0.0352],
+    ),
+}  # fmt: skip
+"""Joint, what its peaks go with and how nearly, peak pressures, peak shears, and moments or rotations."""
 
 
 @pytest.mark.gate
-def test_fretting_with_free_rotation_reference_values(similar):
-    result = solve(Problem.from_load_parameter(similar, 0.05, 0.55, "body", "free"), CYCLE, nodes=601)
-    peaks = [0.46529, 0.50477, 0.55305, 0.54587, 0.55164]
-    shears = [0.2272, -0.2347, 0.2309, -0.2228, 0.2312]
-    rotations = [0.0, -0.0250, 0.0357, -0.0325, 0.0352]
-    for state, peak, shear, rotation in zip(result, peaks, shears, rotations, strict=True):
+@pytest.mark.parametrize("name", FRETTING)
+def test_reference_values_of_fretting(similar, name):
+    joint, with_them, nearly, peaks, shears, turns = FRETTING[name]
+    result = solve(Problem.from_load_parameter(similar, *joint), CYCLE, nodes=601)
+    for state, peak, shear, turn in zip(result, peaks, shears, turns, strict=True):
+        found = {"M": state.resultants["M"], "rotation": state.rotation}
         assert state.peak_pressure == pytest.approx(peak, abs=2e-5)
         assert abs(state.peak_shear) == pytest.approx(abs(shear), abs=1e-3)  # theirs are nodal maxima
-        assert shear * state.peak_shear > 0.0 or rotation == 0.0
-        assert state.rotation == pytest.approx(rotation, abs=6e-5)
-        assert state.resultants["M"] == pytest.approx(0.0, abs=1e-12)
+        assert shear * state.peak_shear > 0.0 or turn == 0.0
+        assert found[with_them] == pytest.approx(turn, abs=nearly)
+        assert name == "fixed" or found["M"] == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(("hub", "integral"), [(1.0, -0.230), (None, -0.214), (0.3, -0.160), (0.1, -0.043)])

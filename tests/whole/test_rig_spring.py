@@ -9,24 +9,9 @@ from fastpin.errors import InputError
 from fastpin.model.problem import Problem
 from fastpin.report.case import describe
 from fastpin.solver.solving import solve
+from tests.support.case_texts import IN_A_RIG
 
 HISTORY = [{"P": 1.0}, {"ux": 0.3}, {"ux": -0.3}, {"ux": 0.3}]
-CASE = """
-[pin]
-material = "Ti-6Al-4V"
-[plate]
-material = "Ti-6Al-4V"
-[contact]
-hole_radius = 5e-3
-clearance = 30e-6
-friction = 0.6
-pin_load = "centre"
-thickness = 5e-3
-drive = "ux"
-rig_stiffness = 3e8
-[[load]]
-P = 6000
-"""
 
 
 def joint(pair, drive="ux", **more):
@@ -68,7 +53,7 @@ def test_a_wrong_stiffness_is_refused(titanium_in_aluminium, drive, stiffness, w
 
 
 def test_the_case_file_gives_the_whole_rig_s_stiffness():
-    case = parse_case(CASE)
+    case = parse_case(IN_A_RIG.replace("[[load]]", "thickness = 5e-3\nrig_stiffness = 3e8\n[[load]]"))
     assert case.problem.rig_stiffness == 3e8 / 5e-3
     assert "rig of stiffness 300 MN per m" in describe(case)
     assert parse_case(case_text(case)).problem == case.problem
