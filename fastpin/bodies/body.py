@@ -42,7 +42,7 @@ InWords = Callable[[Any], str]
 """The text of a value: a length with its unit, or a material."""
 
 Remote = Sequence[float]
-"""A remote stress (sxx, syy, sxy); the own loads of a compliance."""
+"""A remote stress (sxx, syy, sxy), or the own loads of a compliance, and a rise of the temperature."""
 
 Projected = Callable[[np.ndarray], np.ndarray]
 """The coefficients of the tractions, Pa, in the basis of a matrix of a compliance."""
@@ -358,8 +358,8 @@ class PlateBody(BodyBase):
     def check_remote(self, name: str) -> None:
         """Raise :class:`InputError` if the remote stress of this name can't act."""
 
-    def hindered(self, pair: MaterialPair) -> str:
-        """Why the body can't expand freely when it gets warm; empty if it can."""
+    def unknown_when_warm(self, pair: MaterialPair) -> str:
+        """Why it is not known how the body expands when it gets warm; empty if it is."""
         return ""
 
     def fitted(self, table: Table, radius: float, dimensionless: bool, pair: MaterialPair | None) -> PlateBody | None:
@@ -424,6 +424,10 @@ class PlateBody(BodyBase):
     def displacements(self, rim: Rim) -> Displacements:
         """Displacements per unit load, over the radius of the hole: of forces beyond their first harmonic; (T39)."""
         return {}
+
+    def expanded(self, rim: Rim) -> np.ndarray:
+        """Fourier coefficients of v_r + i v_theta of the hole over its radius, n = -K to K, per rise of temperature."""
+        return np.array([(rim.material.expansion or 0.0) + 0j])
 
     def load_columns(self, rim: Rim, beta: float) -> Displacements:
         """As ``displacements``, in units of beta*."""

@@ -42,7 +42,7 @@ from fastpin.model.checks import (
     positive,
     true_or_false,
 )
-from fastpin.model.loads import REMOTE, P, Q
+from fastpin.model.loads import STRESSING, P, Q
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair, check_moduli
 from fastpin.model.synonyms import explains_keywords
 
@@ -227,10 +227,8 @@ class Bushing(PlateBody):
         }  # fmt: skip
         return {"pair": self.surface(pair), "plate_body": Ring(self.outer_radius, "uniform")}, seat
 
-    def hindered(self, pair: MaterialPair) -> str:
-        if not self.has_seat and self.material.expansion != pair.plate.expansion:
-            return "a bonded bush and its plate hinder one another: give the bush a friction, and bonded = false"
-        return self.inside.hindered(pair)
+    def unknown_when_warm(self, pair: MaterialPair) -> str:
+        return self.inside.unknown_when_warm(pair)
 
     def surface(self, pair: MaterialPair) -> MaterialPair:
         return MaterialPair(pair.pin, self.material, pair.plane)
@@ -286,9 +284,8 @@ class Bushing(PlateBody):
         bore, seat = self.around(rim)
         kolosov, outer, unit, found = bore.kolosov, seat.ratio, bore.compliance, {}
         for place, column in self.inside.displacements(seat).items():  # of the lug's own free hole, n = -K to K
-            highest, q, inner = column.size // 2, outer**-2.0, 2.0 * self.inside.pressed(seat) / unit
-            half = 0.5 * (kolosov - 1.0)
-            uniform = 0.5 * (kolosov + 1.0) * column[highest].real / (half + q - inner * (1.0 - q))
+            highest = column.size // 2
+            uniform = column[highest].real * self._passed_inwards(rim)
             first = rim.compliance / unit * self.inside.first(seat).displacement()[0]
             moved_first = (kolosov + 1.0) * column[highest + 1] / harmonics.first_stiffness(outer, kolosov, first)
             order = np.arange(2.0, highest + 1.0)
@@ -297,6 +294,19 @@ class Bushing(PlateBody):
             rotation = 1j * column[highest].imag
             found[place] = spectrum(order, layer.contact_displacement(growing), uniform + rotation, moved_first)
         return found
+
+    def _passed_inwards(self, rim: Rim) -> float:
+        """Radial displacement of the bore over its radius, per that of the lug's own free hole by a load of the lug."""
+        bore, seat = self.around(rim)
+        q, inner = seat.ratio**-2.0, 2.0 * self.inside.pressed(seat) / bore.compliance
+        return 0.5 * (bore.kolosov + 1.0) / (0.5 * (bore.kolosov - 1.0) + q - inner * (1.0 - q))
+
+    def expanded(self, rim: Rim) -> np.ndarray:
+        return (self.material.expansion or 0.0) + self._passed_inwards(rim) * self._misfit(rim)
+
+    def _misfit(self, rim: Rim) -> np.ndarray:
+        """How much more the lug's own free hole grows over its radius than the free bush, per rise of temperature."""
+        return self.inside.expanded(self.around(rim)[1]) - (self.material.expansion or 0.0)
 
     def translation(self, rim: Rim, gauge: float | None) -> tuple[float, float]:
         own, seat = self.around(rim)
@@ -347,6 +357,8 @@ class Bushing(PlateBody):
         kolosov, outer, unit, highest = bore.kolosov, seat.ratio, bore.compliance, len(t) - 1
         order = np.arange(2.0, highest + 1.0)
         moved, q, found, passed = self._moved_hole(seat, t, remote), outer**-2.0, Amplitudes.zero(highest), t.copy()
+        if remote[-1]:
+            moved[highest] += remote[-1] * self._misfit(rim)[0]
         amplitudes, misfit, growing_traction, decaying_traction = _matrices(self, rim, highest)
         growing = (amplitudes @ t[2:, :, None])[..., 0]
         growing = growing + np.linalg.solve(misfit, pairs_of(moved)[..., None])[..., 0]
@@ -376,7 +388,7 @@ class Bushing(PlateBody):
         """
         highest, force = len(t) - 1, force_on(t)
         found = np.zeros(2 * highest + 1, dtype=complex)
-        loads = {Q: force.real, P: -force.imag, **dict(zip(REMOTE, remote, strict=True))}
+        loads = {Q: force.real, P: -force.imag, **dict(zip(STRESSING, remote, strict=True))}
         for place, column in _displacements(self.inside, seat).items():
             middle = column.size // 2
             low = min(middle, highest)

@@ -45,7 +45,7 @@ from fastpin.model.checks import (
 )
 from fastpin.model.grid import Grid
 from fastpin.model.inputs import open_input
-from fastpin.model.loads import LOADS, REMOTE, P, Q
+from fastpin.model.loads import LOADS, REMOTE, TEMPERATURE, P, Q
 from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
 
 FORMAT = "fastpin compliance"
@@ -59,6 +59,9 @@ LEAST_ORDER, MOST_ORDER = 2, 200
 
 COLUMNS = tuple(LOADS[place] for place in REMOTE)
 """Loads that a plate may have besides the forces on the pin: its own loads take the names of the remote stresses."""
+
+WARM = LOADS[TEMPERATURE]
+"""Name of the column of a temperature."""
 
 MOST_ENTRY = 1e9
 """Largest entry, dimensionless. That of a slender lug is below 1e6; a larger one could only mean a wrong unit."""
@@ -88,7 +91,8 @@ class Compliance(PlateBody):
         The plate's compliance less that of the infinite plate, times G; see the module. It does not depend on E. The
         first harmonic holds the translation of the hole over the supports.
     columns : mapping of str to ndarray, shape (2 + 4 K,)
-        Displacement G v/R per unit of a load of the plate. The loads are called sxx, syy and sxy.
+        Displacement G v/R per unit of a load of the plate. The loads are called sxx, syy and sxy. The column
+        "temperature" is v/R per unit of the free thermal strain, beyond free expansion: what the supports hinder.
     made_by : str
         Origin of the numbers.
 
@@ -138,7 +142,7 @@ class Compliance(PlateBody):
             raise InputError("columns", f"must map loads to columns, not {as_toml(self.columns)}")
         columns = {}
         for name, column in self.columns.items():
-            choice("columns", name, COLUMNS)
+            choice("columns", name, (*COLUMNS, WARM))
             columns[name] = numbers(f"columns.{name}", column, -MOST_ENTRY, MOST_ENTRY).copy()
             if columns[name].shape != (size,):
                 raise InputError(f"columns.{name}", f"must have the shape ({size},), not {columns[name].shape}")
@@ -164,6 +168,11 @@ class Compliance(PlateBody):
     def order(self) -> int:
         """The highest harmonic K."""
         return (len(self.matrix) - 2) // 4
+
+    @property
+    def own_loads(self) -> tuple[str, ...]:
+        """Names of the loads of the plate."""
+        return tuple(name for name in COLUMNS if name in self.columns)
 
     @cached_property
     def digest(self) -> str:
@@ -239,7 +248,7 @@ class Compliance(PlateBody):
 
     def columns_of(self, name: str) -> np.ndarray:
         """The column of a load; zeros if the plate has no such load. Another name raises :class:`InputError`."""
-        choice("name", name, COLUMNS)
+        choice("name", name, (*COLUMNS, WARM))
         return self.columns.get(name, np.zeros(len(self.matrix)))
 
     def scaled_to(self, radius: float) -> bool:
@@ -278,11 +287,11 @@ class Compliance(PlateBody):
         return {"kind": self.kind, "sha256": self.digest}
 
     def summary(self) -> dict[str, Any]:
-        return {"order": self.order, "loads": list(self.columns), "made_by": self.made_by}
+        return {"order": self.order, "loads": list(self.own_loads), "made_by": self.made_by}
 
     def words(self, length: InWords) -> str:
         made = f", {self.made_by}" if self.made_by else ""
-        loads = ", ".join(["forces", *self.columns])
+        loads = ", ".join(["forces", *self.own_loads])
         return f"finite plate, compliance of {self.order} harmonics{made}, loads: {loads}"
 
     def caption(self, length: InWords, material: InWords) -> str:
@@ -304,11 +313,13 @@ class Compliance(PlateBody):
 
     def check_remote(self, name: str) -> None:
         if name not in self.columns:
-            known = ", ".join(self.columns) or "none"
+            known = ", ".join(self.own_loads) or "none"
             raise InputError(name, f"the compliance of the plate has no column of this load; its columns are: {known}")
 
-    def hindered(self, pair: MaterialPair) -> str:
-        return "supports may hinder the expansion of a lug, and its compliance does not tell: take a ring or a plate"
+    def unknown_when_warm(self, pair: MaterialPair) -> str:
+        if WARM not in self.columns:
+            return "the compliance of the plate has no column of the temperature: make its file again"
+        return "a rigid lug can't expand within its supports" if pair.plate.is_rigid else ""
 
     def fitted(self, table: Table, radius: float, dimensionless: bool, pair: MaterialPair | None) -> PlateBody | None:
         return None if pair is None else self
@@ -333,10 +344,15 @@ class Compliance(PlateBody):
         columns: Mapping[int, np.ndarray] = {
             Q: self.matrix @ rows[0] / (math.pi * math.sqrt(2.0)),
             P: -self.matrix @ rows[1] / (math.pi * math.sqrt(2.0)),
-            **{LOADS.index(name): column for name, column in self.columns.items()},
+            **{LOADS.index(name): column for name, column in self.columns.items() if name != WARM},
         }
         without = self._without_motion
         return {place: unit * complex_coefficients(without @ column) for place, column in columns.items()}
+
+    def expanded(self, rim: Rim) -> np.ndarray:
+        hindered = complex_coefficients(self._without_motion @ self.columns_of(WARM))
+        hindered[self.order] += 1.0
+        return (rim.material.expansion or 0.0) * hindered
 
     @property
     def _without_motion(self) -> np.ndarray:
@@ -346,8 +362,10 @@ class Compliance(PlateBody):
 
     def over_supports(self, moved: complex, rim: Rim, projected: Projected, load: Mapping[str, float]) -> complex:
         displacement = self.matrix @ projected(self.matrix)
-        for name in (name for name in COLUMNS if name in self.columns):
+        for name in self.own_loads:
             displacement = displacement + load[name] * self.columns[name]
+        if load[WARM]:
+            displacement = displacement + _thermal_stress(rim, load[WARM]) * self.columns_of(WARM)
         unit = math.sqrt(0.5) * rim.radius * rim.compliance
         x, y = unit * (translation_rows(len(self.matrix)) @ displacement)
         return moved + complex(x, y)
@@ -369,7 +387,7 @@ class Compliance(PlateBody):
 
     def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
         """The smooth field near the hole, which leaves the hole free of traction; (T48)."""
-        moved = self._edge_displacement(tractions, remote)
+        moved = self._edge_displacement(rim, tractions, remote)
         moved[np.abs(moved) < 1e-10 * np.abs(moved).max()] = 0.0  # their noise grows like r^n
         order = np.arange(self.order + 1.0)
         amplitudes = 2.0 / (rim.kolosov + 1.0) * (np.arange(-self.order, self.order + 1.0) + 1.0) * moved
@@ -384,16 +402,23 @@ class Compliance(PlateBody):
         """Add the hoop stress on the edge beyond the infinite plate at the angles `at`, shape (m,); (T48)."""
         order = np.arange(-self.order, self.order + 1.0)
         waves = np.exp(1j * np.multiply.outer(at, order))
-        moved = self._edge_displacement(tractions, remote)
+        moved = self._edge_displacement(rim, tractions, remote)
         hoop += 8.0 / (rim.kolosov + 1.0) * np.real(waves @ ((1.0 + order) * moved))
 
-    def _edge_displacement(self, tractions: Harmonics, remote: Remote) -> np.ndarray:
-        """Fourier coefficients of G v/R of the edge beyond the infinite plate, n = -K to K."""
+    def _edge_displacement(self, rim: Rim, tractions: Harmonics, remote: Remote) -> np.ndarray:
+        """Fourier coefficients of G v/R of the edge beyond the infinite plate and free expansion, n = -K to K."""
         t = tractions(self.order)
         moved = self.matrix @ plate_coefficients(-(t[:, 0] + t[:, 1]), -1j * (t[:, 0] - t[:, 1]))
-        for place, value in zip(REMOTE, remote, strict=True):
+        for place, value in zip(REMOTE, remote[:-1], strict=True):
             moved = moved + value * self.columns_of(LOADS[place])
+        if remote[-1]:
+            moved = moved + _thermal_stress(rim, remote[-1]) * self.columns_of(WARM)
         return complex_coefficients(moved)
+
+
+def _thermal_stress(rim: Rim, rise: float) -> float:
+    """G times the free thermal strain of the plate, Pa."""
+    return (rim.material.expansion or 0.0) * rise / rim.compliance
 
 
 @functools.lru_cache(maxsize=8)  # the points of a sweep often share a file

@@ -82,8 +82,8 @@ class Ring(PlateBody):
             words = 'a held rim leaves no remote stress; leave it out, or choose another support, such as "uniform"'
             raise InputError(name, words)
 
-    def hindered(self, pair: MaterialPair) -> str:
-        return "a held rim hinders the expansion of the ring: choose another support" if self.held else ""
+    def unknown_when_warm(self, pair: MaterialPair) -> str:
+        return "a rigid ring can't expand within a held rim" if self.held and pair.plate.is_rigid else ""
 
     # -- the response of the rim
 
@@ -103,6 +103,12 @@ class Ring(PlateBody):
             for place, middle in ((P, -0.5 * math.pi), (Q, 0.0)):
                 mean, half = harmonics.half_cosine(1.0, middle, self.far(rim), m)  # the resultant is 1
                 found[place] = self._displaced(rim, mean, 2.0 * m, np.stack([half, half], axis=1)) / rim.ratio
+        return found
+
+    def expanded(self, rim: Rim) -> np.ndarray:
+        found = super().expanded(rim)
+        if self.held:  # the support moves the rim back: under a uniform s_rr (1 - 1/r^2) that frees the hole
+            found *= 1.0 - (rim.kolosov + 1.0) / (rim.kolosov - 1.0 + 2.0 * self.far(rim) ** -2.0)
         return found
 
     def _displaced(self, rim: Rim, mean: float, order: np.ndarray, traction: np.ndarray) -> np.ndarray:
@@ -125,9 +131,18 @@ class Ring(PlateBody):
         q = far**-2.0
         stiff = kolosov - 1.0 + 2.0 * q if self.held else -2.0 * ((1.0 - 1.0 / far) * (1.0 + 1.0 / far))
         amplitudes.add_uniform(q * t[0, 0].real / stiff)
-        if not self.held:
+        if self.held:
+            self._add_thermal_stress(rim, remote[-1], amplitudes)
+        else:
             self._add_rim_stress(rim, remote, amplitudes)
         return self._add_half_support(rim, force_on(t), amplitudes) if self.support == "half" else ()
+
+    def _add_thermal_stress(self, rim: Rim, rise: float, amplitudes: Amplitudes) -> None:
+        """Add the field of the traction that keeps a held rim in place when the temperature rises."""
+        if rise and rim.material.expansion:
+            strain = rim.material.expansion * rise
+            stiff = 0.5 * rim.compliance * (rim.kolosov - 1.0 + 2.0 * self.far(rim) ** -2.0)
+            amplitudes.add_uniform(-strain / stiff)
 
     def _add_rim_stress(self, rim: Rim, remote: Remote, amplitudes: Amplitudes) -> None:
         """Add the field of a ring whose outer rim carries the tractions of a remote stress."""

@@ -47,7 +47,7 @@ def _print_report(result: lugs.PlateResult, output: Path, drawing: Path | None) 
     say(f"symmetry error   {result.asymmetry:.1e}")
     say(f"estimated error  {result.error:.1e}, from a coarser discretisation")
     say(f"nodes            {result.nodes:,} on all edges")
-    say(f"loads            {', '.join(compliance.columns) or 'none of its own'}")
+    say(f"loads            {', '.join(compliance.own_loads) or 'none of its own'}")
     say(f"wrote {output}" + ("" if drawing is None else f" and {drawing}"))
     if result.error > DOUBTFUL:
         say(f"note: the estimated error is above {DOUBTFUL:g}; edges may be too near one another", file=sys.stderr)

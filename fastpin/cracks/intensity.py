@@ -354,7 +354,7 @@ def histories(
 def _mapped(states: Sequence[State], edge: CrackedEdge, cracks: CrackWeights) -> np.ndarray:
     """The intensities of many states: the product of their nodal tractions and those of the nodes' hat functions."""
     names, shape = (
-        [list(loads.LOADS)[place] for place in loads.REMOTE],
+        [list(loads.LOADS)[place] for place in loads.STRESSING],
         (len(states), *cracks.points.theta.shape[:3], 2),
     )
 

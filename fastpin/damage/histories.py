@@ -79,7 +79,7 @@ def different_states(states: Sequence[State], straight: bool) -> tuple[list[Stat
         change = state.load.get("friction_change", 0.0)
         if (change, same) not in shared:
             shared[change, same] = _digest(parts, straight)
-        remote = np.array([part.load.get(loads.LOADS[place], 0.0) for part in parts for place in loads.REMOTE])
+        remote = np.array([part.load.get(loads.LOADS[place], 0.0) for part in parts for place in loads.STRESSING])
         key = shared[change, same] + remote.tobytes()
         order[k] = seen.setdefault(key, len(different))
         if order[k] == len(different):
@@ -146,7 +146,7 @@ def _read(states: Sequence[State], points: Points, body: Body, straight: bool, p
 
 def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progress | None) -> np.ndarray:
     """Multiply the nodal tractions with the stresses of the hat functions of the nodes, also of the seat of a bush."""
-    problem, names = states[0].problem, [list(loads.LOADS)[place] for place in loads.REMOTE]
+    problem, names = states[0].problem, [list(loads.LOADS)[place] for place in loads.STRESSING]
 
     def stress(tractions: list[Tractions], remote: np.ndarray) -> np.ndarray:
         load = dict(zip(names, remote.tolist(), strict=True))

@@ -34,8 +34,8 @@ def plate_stress(
     ----------
     problem : Problem
     tractions : Tractions
-    remote : ndarray, shape (3,)
-        Remote stress (sxx, syy, sxy); the own loads of a compliance.
+    remote : ndarray, shape (4,)
+        Remote stress (sxx, syy, sxy), or the own loads of a compliance, and the rise of the temperature.
     theta : ndarray, shape (m,)
         Angles of the points, rad.
     depth : ndarray, shape (m,)
@@ -43,9 +43,9 @@ def plate_stress(
     """
     laminate = None if problem.pair.plate.is_isotropic else problem.joint.hole.laminate
     if laminate is not None and not laminate.is_quasi_isotropic:
-        return laminate_stress(laminate, tractions, remote, theta, depth)
+        return laminate_stress(laminate, tractions, remote[:3], theta, depth)
     kolosov, none = problem.surfaces.plate_kolosov, np.zeros(3)
-    far = remote if problem.plate_body.is_infinite else none
+    far = remote[:3] if problem.plate_body.is_infinite else none
     if problem.plate_body.edge_only and not depth.any():
         found, of_order = hole_stress(kolosov, tractions, none, theta, depth), partial(traction_harmonics, tractions)
         problem.plate_body.add_edge_hoop(found[1], problem.joint.hole, of_order, remote.tolist(), theta)
@@ -82,7 +82,7 @@ def seat_stress(
     below = depth / joint.bush
     found = polar(walls.lug, theta, 1.0 + below)
     if joint.plate_body.lug.is_infinite:
-        found += hole_stress(joint.pair.plate_kolosov, Tractions(()), remote, theta, below)
+        found += hole_stress(joint.pair.plate_kolosov, Tractions(()), remote[:3], theta, below)
     return found
 
 
@@ -95,8 +95,10 @@ def hole_stress(
     ----------
     kolosov : float
         Kolosov's constant of the plate.
-    tractions, remote, theta, depth
+    tractions, theta, depth
         See :func:`plate_stress`.
+    remote : ndarray, shape (3,)
+        Remote stress (sxx, syy, sxy).
     """
     (pressure, shear), (sxx, syy, sxy), force = tractions.low_coefficients, remote.tolist(), tractions.force
     share = kolosov / (2.0 * math.pi * (1.0 + kolosov))
@@ -260,7 +262,7 @@ def pin_wall(problem: Problem, tractions: Tractions) -> Wall | None:
 
 @lru_cache(maxsize=80)  # the readings of a state ask for the same ones
 def plate_walls(problem: Problem, tractions: Tractions, remote: tuple[float, ...]) -> PlateWalls | None:
-    """The smooth fields of a plate under tractions and a remote stress (sxx, syy, sxy); None for an infinite plate."""
+    """The smooth fields of a plate under tractions and loads of its own; None for an infinite plate."""
     return problem.plate_body.walls(problem.joint.hole, partial(traction_harmonics, tractions), remote)
 
 

@@ -88,14 +88,19 @@ class BodyTerms:
 
 
 def thermal_columns(problem: Problem) -> dict[int, np.ndarray]:
-    """Growth of the gap per unit of each temperature, its harmonic 0; none where an expansion is not known.
+    """Displacement of the hole over the pin by each temperature; none where an expansion is not known.
 
-    Bodies expand freely, so the gap grows all round by R times the difference of their strains.
+    Pins expand freely, and most plates. There the gap grows all round by R times the difference of the strains.
     """
-    if problem.expansions is None:
-        return {}
     pin, hole = problem.expansions
-    return {TEMPERATURE: np.array([hole - pin + 0j]), PIN_TEMPERATURE: np.array([-pin + 0j])}
+    if pin is None:
+        return {}
+    found = {PIN_TEMPERATURE: np.array([-pin + 0j])}
+    if hole is not None:
+        moved = problem.joint.plate_body.expanded(problem.joint.hole)
+        moved[moved.size // 2] -= pin
+        found[TEMPERATURE] = moved
+    return found
 
 
 @lru_cache(maxsize=16)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.bodies.body import Harmonics, Remote
+from fastpin.bodies.body import Harmonics, Remote, Rim
 from fastpin.bodies.compliance import Compliance, complex_coefficients
 from fastpin.errors import InputError
 from fastpin.joints.parts import Joint
@@ -55,8 +55,8 @@ class HoleInPlate(Compliance):
         numbers = np.r_[self.nu, self.hole_radius, self.matrix.ravel(), self.incoming]
         return hashlib.sha256(self.plane.encode() + numbers.tobytes()).hexdigest()
 
-    def _edge_displacement(self, tractions: Harmonics, remote: Remote) -> np.ndarray:
-        moved: np.ndarray = super()._edge_displacement(tractions, remote) + complex_coefficients(self.incoming)
+    def _edge_displacement(self, rim: Rim, tractions: Harmonics, remote: Remote) -> np.ndarray:
+        moved: np.ndarray = super()._edge_displacement(rim, tractions, remote) + complex_coefficients(self.incoming)
         return moved
 
 

@@ -18,7 +18,7 @@ import numpy as np
 import scipy.linalg
 from threadpoolctl import threadpool_limits
 
-from fastpin.bodies.compliance import LEAST_ORDER, MOST_ORDER, Compliance
+from fastpin.bodies.compliance import LEAST_ORDER, MOST_ORDER, WARM, Compliance
 from fastpin.errors import InputError
 from fastpin.lugs.outline import Hole, Lug, Part
 from fastpin.lugs.panels import Boundary, Edges, Fineness, matrices
@@ -80,6 +80,8 @@ class Response:
         The given tractions, along x and y.
     loads : tuple of str
         Names of the loads.
+    warm : ndarray, shape (2, nodes)
+        Displacements when all supports move by -z, as they do over a plate that expands by a unit of strain.
     resultants : ndarray, shape (3, 2 + 4 K + loads), or None
         Force along x and y, and moment about 0, of the given tractions on a plate that floats. The outline balances
         them by tractions that grow linearly.
@@ -89,13 +91,21 @@ class Response:
     u: np.ndarray
     t: np.ndarray
     loads: tuple[str, ...]
+    warm: np.ndarray
     resultants: np.ndarray | None = None
 
     def projected(self) -> np.ndarray:
         """Coefficients G v/R on the hole's edge, shape (2 + 4 K, 2 + 4 K + loads)."""
+        return self._coefficients(self.u)
+
+    def with_temperature(self) -> np.ndarray:
+        """The same with a last column for the temperature."""
+        return np.hstack([self.projected(), self._coefficients(self.warm[..., None])])
+
+    def _coefficients(self, u: np.ndarray) -> np.ndarray:
         size = self.t.shape[2] - len(self.loads)
         harmonics = self.t[:, :, :size] * self.edges.weights[:, None]
-        found: np.ndarray = 0.5 / math.pi * np.einsum("inf,inc->fc", harmonics, self.u, optimize=True)
+        found: np.ndarray = 0.5 / math.pi * np.einsum("inf,inc->fc", harmonics, u, optimize=True)
         return found
 
 
@@ -135,7 +145,7 @@ def plate_compliance(
     computed = FIRST_TRIED if order is None else order
     tried = 0
     while True:
-        coarse = respond(lug, computed, COARSE, share(0.1 * tried, 0.1)).projected()
+        coarse = respond(lug, computed, COARSE, share(0.1 * tried, 0.1)).with_temperature()
         size = 2 + 4 * computed
         rough = coarse[:, :size] - hole_compliance(computed, lug.kolosov)
         if order is not None or computed == MOST_CHOSEN or harmonic_sizes(rough)[-1] <= KEPT:
@@ -146,10 +156,10 @@ def plate_compliance(
         kept = max(4, int(np.flatnonzero(harmonic_sizes(rough) > KEPT)[-1]))  # the last one shows that they decay
     fine = respond(lug, kept, FINE, share(0.1 * (tried + 1), 0.9 - 0.1 * tried))
     cut = 2 + 4 * kept
-    whole = fine.projected()
+    whole = fine.with_temperature()
     less = whole - np.hstack([coarse[:cut, :cut], coarse[:cut, size:]])
     matrix = whole[:, :cut] - hole_compliance(kept, lug.kolosov)
-    columns = {name: whole[:, cut + place] for place, name in enumerate(fine.loads)}
+    columns = {name: whole[:, cut + place] for place, name in enumerate((*fine.loads, WARM))}
     try:
         made = Compliance(lug.nu, lug.plane, lug.hole_radius, 0.5 * (matrix + matrix.T), columns, made_by)
     except InputError as error:
@@ -239,14 +249,19 @@ def respond(
         along = np.stack([_dot(frame, tractions), _dot(1j * frame, tractions)])
         along[held] = 0.0
         right = U @ along.reshape(size, -1)
+        back = -2.0 * np.stack([_dot(frame, edges.z[:, None]), _dot(1j * frame, edges.z[:, None])])
+        back[~held] = 0.0  # 2G u is 2 by a unit of G times the strain
+        of_supports = -T @ back.reshape(size, 1)
         T[:, held.reshape(-1)] = -U[:, held.reshape(-1)]
         factors = scipy.linalg.lu_factor(T.T, overwrite_a=True, check_finite=False)
         found = scipy.linalg.lu_solve(factors, right, trans=1, check_finite=False).reshape(along.shape)
+        warm = scipy.linalg.lu_solve(factors, of_supports, trans=1, check_finite=False).reshape(back.shape)
     progress(1.0)
-    found[held] = 0.0
+    found[held], warm[held] = 0.0, back[held]
     c, s = frame.real[:, None], frame.imag[:, None]
-    u = np.stack([c * found[0] - s * found[1], s * found[0] + c * found[1]])
-    return Response(edges, u, np.stack([tractions.real, tractions.imag]), loads, resultants)
+    u, by_supports = (np.stack([c * one - s * two, s * one + c * two]) for one, two in (found, warm))
+    given = np.stack([tractions.real, tractions.imag])
+    return Response(edges, u, given, loads, by_supports[..., 0], resultants)
 
 
 class RigidModes(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.checks import MOST_FRICTION, number
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, REMOTE, THERMAL
+from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, PIN_TEMPERATURE, REMOTE, THERMAL
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 
@@ -80,13 +80,13 @@ def check_temperature(problem: Problem, name: str, largest: float) -> None:
         return
     if problem.dimensionless:
         raise InputError(name, "has no meaning with load_parameter: the bodies have no sizes")
-    if why := problem.plate_body.hindered(problem.pair):
+    bodies = dict(problem.joint.materials)
+    if name == LOADS[PIN_TEMPERATURE]:
+        bodies = {"pin": bodies["pin"]}
+    elif why := problem.plate_body.unknown_when_warm(problem.pair):
         raise InputError(name, why)
-    if not problem.pair.plate.is_isotropic:
+    elif not problem.pair.plate.is_isotropic:
         raise InputError(name, "a laminate has no coefficient of thermal expansion here")
-    bodies = {"pin": problem.pair.pin, "plate": problem.pair.plate}
-    if problem.plate_body.bush is not None:
-        bodies["bush"] = problem.plate_body.bush.material
     for body, material in bodies.items():
         if material.expansion is None:
             raise InputError(name, f"needs the coefficient of thermal expansion of the {body}: its key expansion, 1/K")

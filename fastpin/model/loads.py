@@ -58,7 +58,7 @@ LOAD = {
 * ``friction_change``: relative change of the coefficient of friction, a plain number from -1. All round the hole the
   friction is that of the problem times 1 + ``friction_change``.
 * ``temperature``: rise of the temperature of all bodies, K, over that at which the clearance is given. The bodies
-  expand freely, each by its material's ``expansion``, and the fit changes.
+  expand, each by its material's ``expansion``, and the fit changes. Supports and bonded bushes may hinder them.
 * ``pin_temperature``: further rise of the temperature of the pin, K. It adds to ``temperature``.
 
 Files hold load vectors, so a new load stands at the end.
@@ -84,6 +84,9 @@ THERMAL = (TEMPERATURE, PIN_TEMPERATURE)
 
 REMOTE = tuple(place for place, kind in enumerate(LOAD_KIND.values()) if kind == "traction")
 """Places of the remote stresses in a load vector."""
+
+STRESSING = (*REMOTE, TEMPERATURE)
+"""Places of the loads that may stress a plate by themselves. A temperature does where something hinders expansion."""
 
 Corner = Mapping[str, float]
 """Loads at a corner of a history, by name."""

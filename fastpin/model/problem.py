@@ -478,10 +478,9 @@ class Problem:
         return np.maximum(self.friction.at(theta, self.hole_radius), 0.0)  # a spline may pass below zero in between
 
     @property
-    def expansions(self) -> tuple[float, float] | None:
-        """Coefficients of thermal expansion of the pin, and of the body round it, 1/K; None if one is not known."""
-        pin, hole = self.pair.pin.expansion, self.surfaces.plate.expansion
-        return None if pin is None or hole is None else (pin, hole)
+    def expansions(self) -> tuple[float | None, float | None]:
+        """Coefficients of thermal expansion of the pin, and of the body round it, 1/K; None if it is not known."""
+        return self.pair.pin.expansion, self.surfaces.plate.expansion
 
     def gap_at(self, theta: np.ndarray) -> np.ndarray:
         """Initial gap beside the clearance and two derivatives at the angles `theta` (...), rad, m, shape (3, ...)."""

@@ -15,7 +15,7 @@ from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN
 from fastpin.model.checks import instance
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, REMOTE
+from fastpin.model.loads import LOADS, STRESSING
 from fastpin.model.materials import Material
 from fastpin.model.points import ROUNDING, Body, Points, is_beyond_bush, material_of, near_rim
 from fastpin.model.problem import Problem
@@ -264,7 +264,7 @@ def stress_components(
     """
     if body == "pin":
         return pin_stress(problem, tractions, *places)
-    remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])
+    remote = np.array([load.get(LOADS[place], 0.0) for place in STRESSING])
     if seat is not None:
         return _of_joint(problem, (tractions, seat), remote, places, body)
     return (seat_stress if body == "seat" else plate_stress)(problem, tractions, remote, *places)
@@ -319,5 +319,6 @@ def open_hole_hoop(problem: Problem, remote: np.ndarray, angle: float, body: Bod
         sxx, syy, sxy = (float(value) for value in remote)
         return (sxx + syy) - 2.0 * ((sxx - syy) * math.cos(2.0 * angle) + 2.0 * sxy * math.sin(2.0 * angle))
     stress, place = seat_stress if body == "seat" else plate_stress, (np.array([angle]), np.zeros(1))
-    pulled, pressed = (float(stress(problem, Tractions(()), each, *place)[1, 0]) for each in (remote, np.zeros(3)))
+    loads = np.r_[remote, 0.0], np.zeros(len(STRESSING))
+    pulled, pressed = (float(stress(problem, Tractions(()), each, *place)[1, 0]) for each in loads)
     return pulled - pressed

@@ -352,15 +352,18 @@ def elastic_energy(system: System, configuration: Configuration, elastic: np.nda
 
 
 def thermal_energy(system: System, configuration: Configuration) -> float:
-    """What the temperatures add to work and :func:`elastic_energy`, dimensionless: pressure times growth of the gap.
+    """What the temperatures add to work and :func:`elastic_energy`, dimensionless: tractions times their displacement.
 
     Both count every load times its displacement. A body that expands freely stores nothing, so users see both less it.
+    The stress of a body whose expansion is hindered does no work with that of the tractions, so the same holds for it.
     """
     load = configuration.load[list(THERMAL)]
     if not load.any():
         return 0.0
     n = system.grid.size
-    return float((system.weights * configuration.pressure) @ (system.drive.columns[:n, list(THERMAL)] @ load))
+    moved = system.drive.columns[:, list(THERMAL)] @ load
+    of_shear = float((system.weights * configuration.tractions[n:]) @ moved[n:])
+    return float((system.weights * configuration.pressure) @ moved[:n]) + of_shear
 
 
 def marks_left(before: Configuration, now: Configuration, interface: Interface, name: str) -> Marks:

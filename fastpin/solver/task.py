@@ -363,8 +363,7 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
     moment = float(np.abs(values[:, M]).max()) / radius
     remote = float(np.abs(values[:, REMOTE]).max()) * radius
     unit = radius / problem.surfaces.beta_star
-    strains = [] if problem.expansions is None else [*map(abs, problem.expansions)]
-    thermal = max(strains, default=0.0) * float(np.abs(values[:, THERMAL]).max()) * unit
+    thermal = max(abs(each or 0.0) for each in problem.expansions) * float(np.abs(values[:, THERMAL]).max()) * unit
     largest = max(pin, moment) or remote or thermal or unit
     if largest < LEAST_LOAD * unit:
         printed = units(problem)["force"]

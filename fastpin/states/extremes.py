@@ -20,7 +20,7 @@ from fastpin.errors import InputWarning, ReadingError, reading
 from fastpin.model.doubts import are_given, are_loads_plausible, yield_doubt
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import REMOTE
+from fastpin.model.loads import REMOTE, TEMPERATURE
 from fastpin.model.problem import Problem
 from fastpin.model.ties import least_equal
 from fastpin.reading.marks import Marks
@@ -202,7 +202,8 @@ def yield_extremes(kept: Kept) -> Found:
     for block in kept.blocks():
         tractions = [part for each in (block, block.seat or block) for part in (each.pressure, each.shear)]
         remote = np.abs(block.loads[:, list(REMOTE)])
-        columns.append(np.column_stack([remote, *(np.abs(part).max(axis=1) for part in tractions)]))
+        warm = np.abs(block.loads[:, TEMPERATURE])
+        columns.append(np.column_stack([remote, *(np.abs(part).max(axis=1) for part in tractions), warm]))
     if not columns or _are_plainly_elastic(kept.problem, min(owners.values()), np.concatenate(columns).max(axis=0)):
         return Found()  # also if the run was stopped before its first state
     places = {int(np.argmax(column)) for column in np.concatenate(columns).T if column.any()}
@@ -214,8 +215,8 @@ def yield_extremes(kept: Kept) -> Found:
 def _are_plainly_elastic(problem: Problem, least: float, most: np.ndarray) -> bool:
     """Whether the largest stresses on a solid pin and an infinite plate tell that both are far from yield.
 
-    `least` is the least yield strength, Pa. `most` (7,) has the remote stresses (sxx, syy, sxy), and pressure and shear
-    at the pin and in the seat.
+    `least` is the least yield strength, Pa. `most` (8,) has the remote stresses (sxx, syy, sxy), pressure and shear at
+    the pin and in the seat, and temperature.
     """
     plate = problem.plate_body
     is_plain = plate.is_infinite and not (plate.bush or plate.force_points or problem.pin_body.bore_radius)

@@ -20,7 +20,7 @@ from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between, distinct
 from fastpin.model.grid import Grid
-from fastpin.model.loads import FRICTION_CHANGE, LOADS, REMOTE
+from fastpin.model.loads import FRICTION_CHANGE, LOADS, STRESSING
 from fastpin.model.points import Body
 from fastpin.model.problem import Problem
 from fastpin.reading.exponents import Coupling
@@ -120,7 +120,7 @@ class Bounds:
             self._found[name].append(known[name]() if name in known else _unbounded(len(rows)))
         if self._stresses.names:
             interfaces = [each.nodal(rows) for each in (block, block.seat) if each is not None]
-            self._waiting.append((interfaces, block.loads[rows][:, list(REMOTE)]))
+            self._waiting.append((interfaces, block.loads[rows][:, list(STRESSING)]))
             self._count += len(rows)
             if self._count > MAPPED:  # the matrices are worth while: compute the bounds of all waiting states
                 for interfaces, remote in self._waiting:
@@ -259,7 +259,7 @@ class StressBounds:
         self.names = names & {self.HOOP, self.SEAT, *bonded, *owners}
 
     def of(self, interfaces: list[Nodal], remote: np.ndarray) -> dict[str, Pair]:
-        """Return the bounds for tractions and status of the nodes of each interface, and remote stresses (k, 3)."""
+        """Return the bounds for tractions and status of the nodes of each interface, and loads of the plate (k, 4)."""
         tractions = [(pressure, shear) for pressure, shear, _ in interfaces]
         self._map.learn(tractions)
 
@@ -314,7 +314,7 @@ class StressBounds:
         self._points = {name: slice(*pair) for name, pair in zip(sets, pairwise(ends), strict=True)}
 
         def stress(tractions: list[Tractions], remote: np.ndarray) -> np.ndarray:
-            load, (of_pin, *of_seat) = {LOADS[REMOTE[k]]: float(value) for k, value in enumerate(remote)}, tractions
+            load, (of_pin, *of_seat) = {LOADS[STRESSING[k]]: float(value) for k, value in enumerate(remote)}, tractions
             return np.concatenate(
                 [
                     stress_components(problem, of_pin, load, (theta, depth), body, *of_seat)

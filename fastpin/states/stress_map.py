@@ -9,7 +9,7 @@ import numpy as np
 
 from fastpin.elasticity.tractions import Tractions
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, REMOTE
+from fastpin.model.loads import LOADS, STRESSING
 from fastpin.model.problem import Problem
 
 if TYPE_CHECKING:  # this module imports compiled code
@@ -37,7 +37,7 @@ class StressMap:
         Nodes of the pin and, with a bush that slips, of its seat.
     stress : callable
         ``stress(tractions, remote)`` gives components at the points, shape (components, m), from the tractions of each
-        interface and a remote stress (sxx, syy, sxy).
+        interface and the loads that stress a plate, shape (4,): sxx, syy, sxy and the temperature.
 
     Attributes
     ----------
@@ -49,8 +49,10 @@ class StressMap:
     ) -> None:
         self._grids, self._stress, self._none = grids, stress, [Tractions(())] * len(grids)
         self._unit = problem.press_fit_pressure or 1.0  # beside the stress of a press fit 1 Pa is rounding
-        self._press_fit = stress(self._none, np.zeros(3))
-        self._remote = np.array([stress(self._none, self._unit * one) - self._press_fit for one in np.eye(3)])
+        self._press_fit = stress(self._none, np.zeros(len(STRESSING)))
+        self._remote = np.array(
+            [stress(self._none, self._unit * one) - self._press_fit for one in np.eye(len(STRESSING))]
+        )
         self._remote /= self._unit
         self.components, points = self._press_fit.shape
         self._known = [np.zeros(grid.size, dtype=bool) for grid in grids]
@@ -67,7 +69,7 @@ class StressMap:
                     hat = np.zeros((3, 3))
                     hat[:, 0], hat[1, column] = angles, self._unit
                     whole = [*self._none[:place], Tractions((hat,)), *self._none[place + 1 :]]
-                    found = (self._stress(whole, np.zeros(3)) - self._press_fit) / self._unit
+                    found = (self._stress(whole, np.zeros(len(STRESSING))) - self._press_fit) / self._unit
                     self._response[place][which, :, node] = found
                 if progress is not None:
                     progress((place + node / grid.size) / len(self._grids))
@@ -76,7 +78,7 @@ class StressMap:
     def component(
         self, which: int, tractions: Sequence[NodalTractions], remote: np.ndarray, points: slice = slice(None)
     ) -> np.ndarray:
-        """Return a component, shape (k, m), of tractions that were learned and remote stresses (k, 3)."""
+        """Return a component, shape (k, m), of tractions that were learned and loads of the plate (k, 4)."""
         total = 0.0
         for known, response, (pressure, shear) in zip(self._known, self._response, tractions, strict=True):
             own = response[:, which, :, points]
@@ -112,7 +114,7 @@ def mapped(
     seats = [state.seat for state in states if state.seat is not None]
     parts = [part for part in (states, seats) if part]
     tractions = [(np.array([one.pressure for one in part]), np.array([one.shear for one in part])) for part in parts]
-    names = [list(LOADS)[place] for place in REMOTE]
+    names = [list(LOADS)[place] for place in STRESSING]
     remote = np.array([[state.load.get(name, 0.0) for name in names] for state in states])
     linear = StressMap(states[0].problem, [part[0].grid for part in parts], stress)
     linear.learn(tractions, progress)

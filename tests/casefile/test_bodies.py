@@ -255,7 +255,7 @@ WRONG_FILES: dict[str, tuple[str | bytes | Callable[[Path], object], str]] = {
     "version": (json.dumps(GOOD | {"version": 99}), "version: must be 1, not 99"),
     "column": (
         json.dumps(GOOD | {"columns": {"P": [0.0] * 18}}),
-        'columns: must be "sxx", "syy" or "sxy", not "P"',
+        'columns: must be "sxx", "syy", "sxy" or "temperature", not "P"',
     ),
     "large column": (
         json.dumps(GOOD | {"columns": {"syy": [1e308] * 18}}),

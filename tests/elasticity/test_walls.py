@@ -20,7 +20,7 @@ from tests.support.checks.body_cases import ring_compliance
 
 UNLIKE = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2), "stress")
 BRONZE = Material(1.5, 0.34)
-REMOTE, NO_LOAD = np.array([0.3, -0.2, 0.1]), np.zeros(3)
+REMOTE, NO_LOAD = np.array([0.3, -0.2, 0.1, 0.0]), np.zeros(4)
 AROUND = 2.0 * np.pi * np.arange(997) / 997
 TUBES = [Tube(bore, load) for bore in (0.5, 0.9) for load in ("uniform", "normal", "shear", "held", "body")]
 RINGS = [Ring(outer, load) for outer in (1.3, 2.0) for load in ("held", "uniform", "normal", "shear", "half", "body")]
@@ -94,7 +94,7 @@ def test_tractions_on_the_contact_rim_stay(body):
     if isinstance(body, Tube):
         known = disk_stress(problem.pair.pin_kolosov, "centre", SOME, AROUND, none)
     else:
-        known = hole_stress(problem.surfaces.plate_kolosov, SOME, NO_LOAD, AROUND, none)
+        known = hole_stress(problem.surfaces.plate_kolosov, SOME, NO_LOAD[:3], AROUND, none)
     assert (found - known)[[0, 2]] == pytest.approx(0.0, abs=2e-13)
     assert np.abs(found - known)[1].max() > 0.1
 
@@ -378,7 +378,9 @@ def test_hoop_stress_on_the_edge_follows_from_the_compliances(body):
     if is_pin:
         found = pin_stress(problem, SOME, AROUND, none) - disk_stress(kolosov, "centre", SOME, AROUND, none)
     else:
-        found = plate_stress(problem, SOME, NO_LOAD, AROUND, none) - hole_stress(kolosov, SOME, NO_LOAD, AROUND, none)
+        found = plate_stress(problem, SOME, NO_LOAD, AROUND, none) - hole_stress(
+            kolosov, SOME, NO_LOAD[:3], AROUND, none
+        )
     spectrum = np.fft.fft(found[1] - expected) / AROUND.size
     assert spectrum[2:-1] == pytest.approx(0.0, abs=2e-13)  # beside the harmonics 0 and 1
 
@@ -391,7 +393,7 @@ def test_a_compliance_of_a_ring_has_the_hoop_stress_of_the_ring():
 
 def test_disk_and_plate_have_no_wall():
     depth = 0.0 * AROUND + 0.25
-    known = hole_stress(case().pair.plate_kolosov, SOME, REMOTE, AROUND, depth)
+    known = hole_stress(case().pair.plate_kolosov, SOME, REMOTE[:3], AROUND, depth)
     assert np.array_equal(plate_stress(case(), SOME, REMOTE, AROUND, depth), known)
     known = disk_stress(case().pair.pin_kolosov, "centre", SOME, AROUND, depth)
     assert np.array_equal(pin_stress(case(), SOME, AROUND, depth), known)

@@ -53,6 +53,27 @@ def test_a_held_ring_agrees_with_its_closed_form(plane):
 
 
 @pytest.mark.gate
+@pytest.mark.parametrize("plane", [*gate("strain"), "stress"])
+def test_the_supports_of_a_held_ring_that_gets_warm_move_its_hole(plane):
+    """By the closed form of :class:`fastpin.bodies.Ring`: -(kappa + 1)/(kappa - 1 + 2 q) all round."""
+    lug = Lug(0.3, plane, 5e-3, disc(10e-3), {"rim": "both"})
+    moved = plate_compliance(lug, ORDER).compliance.columns_of("temperature")
+    expected = -math.sqrt(2.0) * (lug.kolosov + 1.0) / (lug.kolosov - 1.0 + 0.5)
+    assert moved[0] == pytest.approx(expected, rel=1e-9)
+    assert np.abs(moved[1:]).max() < 1e-9
+
+
+@pytest.mark.gate
+def test_supports_that_let_a_lug_expand_only_move_it(monkeypatch):
+    """The edges on the left and below keep their place: the hole moves away by 3 and 4 radii, its distances."""
+    make_rough(monkeypatch)
+    lug = Lug(0.3, "stress", 5e-3, rectangle((-15e-3, 20e-3), (-20e-3, 25e-3)), {"left": "x", "bottom": "y"})
+    moved = plate_compliance(lug, ORDER).compliance.columns_of("temperature")
+    assert moved[2:6] == pytest.approx([3.0, 4.0, 4.0, -3.0])
+    assert np.abs(np.delete(moved, slice(2, 6))).max() < 1e-9
+
+
+@pytest.mark.gate
 def test_a_free_ring_agrees_with_its_closed_form(monkeypatch):
     """The ring is held on a tiny arc. It takes up no force while the tractions are in equilibrium."""
     make_rough(monkeypatch)

@@ -46,7 +46,7 @@ def cartesian(components, theta):
     return (radial + 1j * shear) * np.exp(1j * theta)
 
 
-def stresses(body, case, tractions, theta, depth, remote=(0.0, 0.0, 0.0)):
+def stresses(body, case, tractions, theta, depth, remote=(0.0, 0.0, 0.0, 0.0)):
     """Radial, hoop and shear stress in a body. The remote stress acts on the plate."""
     if body == "plate":
         return plate_stress(case, tractions, np.array(remote), theta, depth)
@@ -60,7 +60,7 @@ def test_lame_and_uniform_shear():
     theta, depth = np.linspace(-3.0, 3.0, 15), np.linspace(0.0, 0.9, 15)
     pressed = round_tractions(lambda _: 2.0, lambda _: 0.0)
     square = (1.0 + depth) ** -2
-    radial, hoop, shear = plate_stress(problem(), pressed, np.zeros(3), theta, depth)
+    radial, hoop, shear = plate_stress(problem(), pressed, np.zeros(4), theta, depth)
     assert radial == pytest.approx(-2.0 * square, abs=1e-13)
     assert hoop == pytest.approx(2.0 * square, abs=1e-13)
     assert shear == pytest.approx(0.0 * square, abs=1e-13)
@@ -69,7 +69,7 @@ def test_lame_and_uniform_shear():
         assert np.array([radial, hoop]) == pytest.approx(-2.0, abs=1e-13)
         assert shear == pytest.approx(0.0, abs=1e-13)
     turned = round_tractions(lambda _: 0.0, lambda _: 1.0)
-    assert plate_stress(problem(), turned, np.zeros(3), theta, depth)[2] == pytest.approx(square, abs=1e-13)
+    assert plate_stress(problem(), turned, np.zeros(4), theta, depth)[2] == pytest.approx(square, abs=1e-13)
     found = pin_stress(problem(), turned, theta, depth)
     assert found[2] == pytest.approx((1.0 - depth) ** -2.0, rel=1e-11)
     assert found[:2] == pytest.approx(0.0, abs=1e-10)
@@ -86,7 +86,7 @@ def test_resultants_through_circles(pin_load):
     pressure, shear = tractions.coefficients(1)
     force = 2.0 * np.pi * np.conj(pressure[1] + 1j * shear[1])
     for radius in (1.3, 2.0, 7.0):
-        found = plate_stress(case, tractions, np.array([0.4, 0.1, -0.3]), theta, np.full(n, radius - 1.0))
+        found = plate_stress(case, tractions, np.array([0.4, 0.1, -0.3, 0.0]), theta, np.full(n, radius - 1.0))
         assert radius * 2.0 * np.pi * cartesian(found, theta).mean() == pytest.approx(-force, abs=1e-12)
         assert radius**2 * found[2].mean() == pytest.approx(shear[0].real, abs=1e-12)
     for radius in (1.0 / 150.0, 0.02, 0.3, 0.49, 0.51, 0.8):

@@ -147,7 +147,7 @@ def test_stresses_of_hat_functions_add_up(result: Result) -> None:
 
     stress = StressMap(result.problem, [result.grid], of)
     pressure, shear = (np.array([getattr(state, name) for state in result[:6]]) for name in ("pressure", "shear"))
-    remote = np.zeros((6, 3))
+    remote = np.zeros((6, 4))
     stress.learn([(pressure, shear)])
     hoop = stress.component(1, [(pressure, shear)], remote)
     known = np.array([state.hoop_stress("plate", theta, straight=True) for state in result[:6]])

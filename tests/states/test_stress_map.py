@@ -19,13 +19,13 @@ def test_nodal_stresses_of_a_press_fit_under_remote_stress_are_those_of_the_stat
     places = Places.of(joint, state.grid, owner)
 
     def stress(given: list[Tractions], remote: np.ndarray) -> np.ndarray:
-        load = dict(zip(("sxx", "syy", "sxy"), remote.tolist(), strict=True))
+        load = dict(zip(("sxx", "syy", "sxy", "temperature"), remote.tolist(), strict=True))
         return stress_components(joint, given[0], load, (places.theta, places.depth), places.body)
 
     map_of = StressMap(joint, [state.grid], stress)
     tractions = [(state.pressure[None], state.shear[None])]
     map_of.learn(tractions)
-    remote = np.array([4e7, 0.0, 1e7])
+    remote = np.array([4e7, 0.0, 1e7, 0.0])
     there = state.stress(Points.at_depth(places.depth * 10e-3, places.theta), places.body, straight=True)
     for component, expected in enumerate((there.radial, there.hoop, there.shear)):
         found = map_of.component(component, tractions, remote)[0]
