@@ -15,6 +15,7 @@ from fastpin.assess.outputs import Curve, Follow, Output, chosen, kept, or_null,
 from fastpin.cracks.fates import CRACK_FATES, CrackFate
 from fastpin.errors import InputError
 from fastpin.model import Case, LoadHistory, Problem, angles, points
+from fastpin.model.case import questions_of
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth, law_of
 from fastpin.model.doubts import doubts_given
 from fastpin.model.growth import KnownLaw, Nasgro, Walker, law_entries
@@ -147,9 +148,10 @@ def find(case: Case, held: Held | None, progress: Follow | None = None) -> crack
     InputError
         If it can't be followed.
     """
-    if held is None or case.crack is None:
+    crack = questions_of(case).get("crack")
+    if held is None or crack is None:
         return None
-    return CrackStops.of(len(case.history), held.result.cycles, held.between).growth(case.crack, progress)
+    return CrackStops.of(len(case.history), held.result.cycles, held.between).growth(crack, progress)
 
 
 def law_words(problem: Problem, law: KnownLaw) -> str:

@@ -11,7 +11,7 @@ from fastpin.assess.crack import DOCUMENT, QUESTION, CrackStops, growth_curve, g
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
-from fastpin.model.case import Case
+from fastpin.model.case import Case, questions_of
 from fastpin.model.crack import CrackGrowth, crack_from
 from fastpin.model.growth import LAWS
 from fastpin.model.keys import CASE
@@ -50,7 +50,8 @@ def _how(options: argparse.Namespace, case: Case) -> CrackGrowth:
     known = case if options.case is None else casefile.read_case(options.case)
     if options.case is not None and known.crack is None:
         raise InputError("case", f"{options.case} has no section [crack]")
-    entries = {} if known.crack is None else known.crack.entries()
+    crack = questions_of(known).get("crack")
+    entries = {} if crack is None else crack.entries()
     given = {"first": options.first, "last": options.last, "theta": options.at, "body": options.body}
     given |= {"angle": options.angle}
     keys = dict.fromkeys(["law", *(name for _, names, _ in LAWS.values() for name in names)])

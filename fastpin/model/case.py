@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
 from fastpin.errors import InputError
@@ -17,6 +17,7 @@ from fastpin.model.checks import as_toml, check_fields, choice, instance, string
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth, check_crack, crack_from
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
+from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.strength import STRENGTH_KEYS, StrengthAssessment, check_strength
 from fastpin.model.wear import Wear
@@ -73,6 +74,20 @@ BESIDE = {
 def beside_of(case: Any) -> dict[str, Any]:
     """The values of the sections of a case that has them, by name."""
     return {name: value for name in BESIDE if (value := getattr(case, name)) is not None}
+
+
+def questions_of(case: Any) -> dict[str, Any]:
+    """The sections of a case as they are answered, by name.
+
+    A crack in the plate without a residual stress of its own takes that of the fatigue: both have one hole.
+    """
+    found = beside_of(case)
+    crack, fatigue = found.get("crack"), found.get("fatigue")
+    if crack is None or fatigue is None or crack.residual_stress is not None:
+        return found
+    if owner_of(case.problem, crack.body) == "plate":
+        found["crack"] = replace(crack, residual_stress=fatigue.residual_stress)
+    return found
 
 
 def checked_beside(problem: Problem, given: Mapping[str, Any]) -> dict[str, Any]:

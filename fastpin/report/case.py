@@ -10,7 +10,7 @@ import numpy as np
 from fastpin import assess
 from fastpin.assess.outputs import ROUNDING, Column, table, visible_rows
 from fastpin.model import Case, LoadHistory, Material, Problem, Wear, checks, points
-from fastpin.model.case import beside_of
+from fastpin.model.case import questions_of
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.units import acting_loads, units
 
@@ -71,7 +71,7 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
     if case.wear is not None:
         rows.append(("wear", _wear_words(problem, case.wear)))
     return rows + [
-        (name, assess.questions.QUESTIONS[name].words(problem, how)) for name, how in beside_of(case).items()
+        (name, assess.questions.QUESTIONS[name].words(problem, how)) for name, how in questions_of(case).items()
     ]
 
 

@@ -21,7 +21,7 @@ from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.acting import check_loads
-from fastpin.model.case import Case, beside_of
+from fastpin.model.case import Case, questions_of
 from fastpin.model.checks import number
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries
@@ -100,7 +100,7 @@ class BaseCase:
             return {}
         repeats = any(name.startswith("load.") and name.endswith(".repeat") for name in varied)
         passes = {} if repeats else {"passes": passes_of(case.history)}
-        return passes | ({} if case.wear is None else {"wear": case.wear}) | beside_of(case)
+        return passes | ({} if case.wear is None else {"wear": case.wear}) | questions_of(case)
 
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""

@@ -11,7 +11,9 @@ import pytest
 import fastpin
 from fastpin import cracks, damage
 from fastpin.assess.crack import growth_line
+from fastpin.bodies import Bushing
 from fastpin.casefile import case_text
+from fastpin.model.case import questions_of
 from fastpin.report import json_schema
 from tests.support.case_texts import IN_CYCLES
 from tests.support.commands import printed, refused, said
@@ -129,6 +131,31 @@ def test_a_case_with_a_crack_has_its_growth():
     said("report", "case.h5", "-o", "page.html")
     law = "Law of growth: walker, C = 1e-10, m = 3, exponent = 0.5 (SI units); source: own tests."
     assert law in Path("page.html").read_text()
+
+
+@pytest.mark.gate
+def test_one_residual_stress_serves_fatigue_and_crack():
+    """That of [fatigue] acts on a crack in the plate too, unless [crack] has its own."""
+    Path("own.toml").write_text(CASE)
+    of_fatigue = CASE.replace("residual_stress = -10e6\n", "[fatigue]\nbodies = 'plate'\nresidual_stress = -10e6\n")
+    constants = "strength_exponent = -0.1, fatigue_ductility = 0.5, ductility_exponent = -0.6"
+    of_fatigue = of_fatigue.replace("plate = {", f"plate = {{ fatigue = {{ fatigue_strength = 1e9, {constants} }},")
+    Path("case.toml").write_text(of_fatigue)
+    line = f"crack at 66.00 deg from the bottom: {planned(fastpin.read_case('own.toml')).words}"
+    assert line in printed("run", "case.toml", "-o", "case.h5")
+    assert line in printed("crack", "case.h5")
+    assert any(
+        "walker" in row and row.endswith(", with a residual stress")
+        for row in printed("check", "case.toml").split("\n")
+    )
+    assert line not in printed("crack", "case.h5", "--at", 60)
+    case = fastpin.read_case("case.toml")
+    assert case.crack.residual_stress is None
+    assert questions_of(case)["crack"].residual_stress == -10e6
+    in_bush = replace(case.problem, plate_body=Bushing(case.problem.pair.plate, 12e-3))
+    assert questions_of(replace(case, problem=in_bush))["crack"].residual_stress is None
+    own = replace(case, crack=replace(case.crack, residual_stress=0.0))
+    assert questions_of(own)["crack"].residual_stress == 0.0
 
 
 @pytest.mark.gate

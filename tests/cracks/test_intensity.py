@@ -10,6 +10,7 @@ import fastpin
 from fastpin import bodies
 from fastpin.cracks import Crack, stress_intensity
 from fastpin.errors import InputError, InputWarning
+from fastpin.model.crack import CrackGrowth
 from tests.support.cracks import DIRECTION, LIKE, problem_of
 from tests.support.refusals import refused
 
@@ -100,6 +101,23 @@ def test_a_residual_stress_is_added(small_states):
         stress_intensity(small_states, crack, lengths, residual_stress=lambda s: float(s))
     with pytest.raises(InputError, match="residual_stress: must be a callable"):
         stress_intensity(small_states, crack, lengths, residual_stress=3.0)
+
+
+def test_residual_stresses_are_superposed():
+    """Around an unloaded hole a tension p all round leaves the hoop stress p (1 + (R/r)^2).
+
+    The plate without a load has the same K from this residual stress in pairs.
+    """
+    p, crack, lengths, joint = 80e6, Crack(0.7), [1e-4, 2e-3, 2e-2], problem_of(LIKE, 20e-6, 0.3)
+    tension, none = fastpin.solve(joint, [{"sxx": p, "syy": p}, {"sxx": 0.0, "syy": 0.0}], nodes=41)
+    at = np.linspace(0.0, 1.0, 1000) ** 2 * lengths[-1]
+    hoop = p * (1.0 + (1.0 + at / joint.hole_radius) ** -2.0)
+    how = CrackGrowth(lengths[0], lengths[-1], residual_stress=np.column_stack([at, hoop]))
+    loaded = stress_intensity(tension, crack, lengths).K_I
+    found = stress_intensity(none, crack, lengths, residual_stress=how.residual).K_I
+    assert found == pytest.approx(loaded, rel=1e-5)
+    uniform = stress_intensity(none, crack, lengths, residual_stress=lambda s: p).K_I
+    assert pytest.approx(loaded + uniform) == stress_intensity(tension, crack, lengths, residual_stress=lambda s: p).K_I
 
 
 def test_doubts(small_states):

@@ -12,6 +12,7 @@ import pytest
 
 import fastpin
 from fastpin.errors import InputError
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.solver.errors import Interrupted, ResolutionError
 from fastpin.storage import wear_files, writer
 from fastpin.storage.journal import JournaledFile
@@ -250,3 +251,9 @@ def test_a_life_that_is_killed_ten_times_has_the_same_bits(tmp_path):
         assert done.returncode == -signal.SIGKILL, done.stderr
     life(path, cycles=3000, tolerance=0.005, resume=True)
     assert_same_life(fastpin.load_wear(path), life(cycles=3000, tolerance=0.005))
+
+
+@pytest.mark.parametrize("given", [{"residual_stress": -1e8}, {"reliability": 0.99, "criterion": "stress-life"}])
+def test_a_life_of_wear_takes_median_lives_without_residual_stress(given):
+    with pytest.raises(InputError, match="fatigue: must have neither residual_stress nor reliability: a life of wear"):
+        fastpin.storage.wear(BUMPED, BUMPED_TURNS, coefficient=1e-15, fatigue=FatigueAssessment(**given))
