@@ -285,7 +285,7 @@ class Bushing(PlateBody):
         kolosov, outer, unit, found = bore.kolosov, seat.ratio, bore.compliance, {}
         for place, column in self.inside.displacements(seat).items():  # of the lug's own free hole, n = -K to K
             highest = column.size // 2
-            uniform = column[highest].real * self._passed_inwards(rim)
+            uniform = self._passed_inwards(rim, column[highest].real)
             first = rim.compliance / unit * self.inside.first(seat).displacement()[0]
             moved_first = (kolosov + 1.0) * column[highest + 1] / harmonics.first_stiffness(outer, kolosov, first)
             order = np.arange(2.0, highest + 1.0)
@@ -295,18 +295,19 @@ class Bushing(PlateBody):
             found[place] = spectrum(order, layer.contact_displacement(growing), uniform + rotation, moved_first)
         return found
 
-    def _passed_inwards(self, rim: Rim) -> float:
-        """Radial displacement of the bore over its radius, per that of the lug's own free hole by a load of the lug."""
+    def _passed_inwards(self, rim: Rim, moved: float) -> float:
+        """Radial displacement of the bore over its radius, if a load moves the lug's own free hole by `moved`."""
         bore, seat = self.around(rim)
         q, inner = seat.ratio**-2.0, 2.0 * self.inside.pressed(seat) / bore.compliance
-        return 0.5 * (bore.kolosov + 1.0) / (0.5 * (bore.kolosov - 1.0) + q - inner * (1.0 - q))
+        return 0.5 * (bore.kolosov + 1.0) * moved / (0.5 * (bore.kolosov - 1.0) + q - inner * (1.0 - q))
 
     def expanded(self, rim: Rim) -> np.ndarray:
-        return (self.material.expansion or 0.0) + self._passed_inwards(rim) * self._misfit(rim)
+        return np.array([(self.material.expansion or 0.0) + self._passed_inwards(rim, self._misfit(rim)) + 0j])
 
-    def _misfit(self, rim: Rim) -> np.ndarray:
+    def _misfit(self, rim: Rim) -> float:
         """How much more the lug's own free hole grows over its radius than the free bush, per rise of temperature."""
-        return self.inside.expanded(self.around(rim)[1]) - (self.material.expansion or 0.0)
+        around = self.inside.expanded(self.around(rim)[1])
+        return float(around[around.size // 2].real) - (self.material.expansion or 0.0)
 
     def translation(self, rim: Rim, gauge: float | None) -> tuple[float, float]:
         own, seat = self.around(rim)
@@ -358,7 +359,7 @@ class Bushing(PlateBody):
         order = np.arange(2.0, highest + 1.0)
         moved, q, found, passed = self._moved_hole(seat, t, remote), outer**-2.0, Amplitudes.zero(highest), t.copy()
         if remote[-1]:
-            moved[highest] += remote[-1] * self._misfit(rim)[0]
+            moved[highest] += remote[-1] * self._misfit(rim)
         amplitudes, misfit, growing_traction, decaying_traction = _matrices(self, rim, highest)
         growing = (amplitudes @ t[2:, :, None])[..., 0]
         growing = growing + np.linalg.solve(misfit, pairs_of(moved)[..., None])[..., 0]

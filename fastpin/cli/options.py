@@ -392,7 +392,7 @@ def add_identify(commands: Any) -> None:
     _switch(identify, "--by-cycle", "a friction of its own for each cycle")
     words = "rest: the record begins at no displacement (default); cycle: it begins in a steady cycle"
     _option(identify, "--start", "WHERE", words, default="rest")
-    _option(identify, "--nodes", "N", "nodes of the first fit (default 61)", literal, default=61)
+    _option(identify, "--nodes", "N", "nodes of the first fit (default 41)", literal, default=41)
     _option(identify, "--csv", "FILE", "write the measured and the computed loop", Path)
     _option(identify, "--plot", "FILE", "draw both loops and the energies (png, pdf, svg)", Path)
     _add_json(identify, "write what the loop tells as JSON")

@@ -104,7 +104,7 @@ def identify(
     *,
     by_cycle: bool = False,
     start: Start = "rest",
-    nodes: int = 61,
+    nodes: int = 41,
     progress: IdentifyProgress | None = None,
 ) -> Identified:
     """Fit friction, rig and offsets to a measured loop of a displacement and its force.

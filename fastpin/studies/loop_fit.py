@@ -2,6 +2,10 @@
 
 The model is driven by the ends of the branches alone. The unknowns are fitted to the distances of all samples from its
 curves, along the normal. The unknown of the friction is its reciprocal: the friction itself has a tail to infinity.
+
+The measured ends have errors, and each moves the branches behind it as a whole. So the distances of a branch are
+correlated. Their covariance follows from the noise of the samples around the ends, and the distances are made
+independent before they are fitted. Without this the friction of loops with a plateau came out half a bar too high.
 """
 
 from __future__ import annotations
@@ -17,16 +21,16 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.runtime.extensions import optimize
+from fastpin.runtime.extensions import optimize, special
 from fastpin.solver.errors import ArcError, ResolutionError, SolveError
 from fastpin.solver.solving import MemoryRecorder
 from fastpin.solver.task import Task
 from fastpin.studies.measured_loop import MeasuredLoop
 
-POINTS, FINEST, MOVED = 8, 8, 0.4
-"""Points of a branch, and the most times as many. They are twice as many until friction and rig move by less than this
-many standard deviations: a quarter of it is left. The nodes are doubled once, for they matter less: in a loop with a
-plateau 8, 16 and 32 points gave a friction 1.7, 0.7 and 0.15 deviations off, with 61 nodes and with 122."""
+POINTS, FINER, FINEST, MOVED = 8, 4, 16, 2.0
+"""Points of a branch. They are four times as many until friction and rig move by less than this many standard
+deviations, at most sixteen times: a tenth of it is left. The nodes are doubled once, for they matter less: in a loop
+with a plateau 8, 16 and 32 points gave a friction 1.7, 0.7 and 0.15 deviations off, with 61 nodes and with 122."""
 
 STEPS = {"friction": 0.03, "compliance": 5e-3, "displacement_offset": 1e-3, "displacement_drift": 1e-3,
          "clearance": 1e-2, "force_offset": 1e-3, "force_drift": 1e-3, "scale": 1e-3}  # fmt: skip
@@ -35,15 +39,35 @@ STEPS = {"friction": 0.03, "compliance": 5e-3, "displacement_offset": 1e-3, "dis
 LEAST, MOST = 0.05, 20.0
 """Least and most 1/friction. A pin with a friction of 20 sticks wherever it touches."""
 
-ROUNDS, CONVERGED = 5, 0.05
-"""Most Jacobians by differences, and a change of the sum of squares in units of the noise that counts as none."""
+ROUNDS, CONVERGED, ROUGH = 5, 0.05, 2.0
+"""Most Jacobians by differences, and a change of the sum of squares in units of the noise that counts as none. As long
+as the fit is looked for, a larger one does."""
 
-SIGMA, TRIES, CLOSE = 1.04 * 1.96, 6, 0.25
-"""Standard deviations of an interval of 95 %: the noise of the ends, which drive the model, adds 4 % to a bar. Most
-values of a friction that are tried for each end of its interval, and how close the last one comes."""
+TRIES, CLOSE = 6, 0.25
+"""Most values of a friction that are tried for each end of its interval, and how close the last one comes, in standard
+deviations."""
 
-STARTS = (0.6, 1.6)
-"""Factors of 1/friction from which it is fitted again: contacts that slip more or less have minima of their own."""
+WIDER = 1.1
+"""Factor of the interval of a friction. Contacts that slip more and less fit by turns, and the other unknowns are not
+fitted to the end. Without it 285 of 309 intervals held the truth, with it 290."""
+
+BEHIND = 3
+"""Branches behind a turning point that its error is taken to move. Beyond them the contact has forgotten it."""
+
+LEAST_VARIANCE = 0.3
+"""Least variance of a combination of distances. Where a turning point follows the noise of the samples around it, the
+variance may be 0, and no model is as good."""
+
+STARTS, NEARBY = (0.6, 1.6), 12.0
+"""Factors of 1/friction from which it is fitted again: contacts that slip more or less have minima of their own. The
+start counts if the sum of squares there, with the others fitted, is larger by less than the second number."""
+
+RELATED = 2.0
+"""Correlation of neighbouring distances, in its own deviations, from which the noise counts as filtered."""
+
+TRIALS, FAILURES = 8, 2
+"""Most steps with one Jacobian, and most steps one after the other that make a fit no better: each is damped more than
+the one before."""
 
 LOST = 50.0
 """Distance of all samples, in standard deviations, where the model has no state."""
@@ -131,6 +155,40 @@ class LoopModel:
         return np.array([state.resultants[self.names[1]] for state in kept.states])
 
 
+@dataclass(frozen=True, eq=False)
+class Whitening:
+    """What makes the errors of all distances independent, with deviation 1: a change within a few combinations of them.
+
+    The distances err by e - V d. e is the noise of the samples, V the change of the distances with the turning points
+    that drive the model, d the errors of these points. The points come from the same samples, so e and d are related.
+
+    Attributes
+    ----------
+    basis : ndarray, shape (n, m)
+        Combinations with another variance than 1, orthonormal.
+    factors : ndarray, shape (m,)
+        1 over their deviations.
+    """
+
+    basis: np.ndarray
+    factors: np.ndarray
+
+    @classmethod
+    def of(cls, moved: np.ndarray, related: np.ndarray, errors: np.ndarray) -> Whitening:
+        """The whitening for V (n, turns), the covariance of e and d (n, turns), and that of d (turns, turns)."""
+        none = np.eye(errors.shape[0])
+        basis, factor = np.linalg.qr(np.hstack([moved, related]))
+        inner = factor @ np.block([[errors, -none], [-none, 0.0 * none]]) @ factor.T
+        values, turned = np.linalg.eigh(inner)
+        return cls(basis @ turned, np.maximum(1.0 + values, LEAST_VARIANCE) ** -0.5)
+
+    def __call__(self, distances: np.ndarray) -> np.ndarray:
+        """Distances (n, ...) with independent errors."""
+        parts = self.basis.T @ distances
+        found: np.ndarray = distances + self.basis @ ((self.factors * parts.T).T - parts)
+        return found
+
+
 class Minimum(NamedTuple):
     """A sum of squares, the unknowns of shape (unknowns,) there, and the Jacobian of shape (samples, unknowns)."""
 
@@ -151,7 +209,7 @@ class LoopFit:
     low, high : ndarray, shape (unknowns,)
         Intervals of 95 %.
     scatter, moved : float
-        `moved` is the last change by twice the points, in standard deviations.
+        `moved` is the last change by more points, in standard deviations.
     """
 
     def __init__(self, model: LoopModel, wanted: Sequence[str]) -> None:
@@ -179,17 +237,23 @@ class LoopFit:
         self.sizes = np.array([size for _, _, size in guess])
         limits = {"friction": (LEAST, MOST), "compliance": (0.0, np.inf), "scale": (0.1, 10.0)}
         self.bounds = np.array([limits.get(name, (-np.inf, np.inf)) for name in self.names]).T
+        freedom = loop.time.size - self.sizes.size
+        self.sigma = float(special.stdtrit(freedom, 0.975))
+        self.whitening = Whitening(np.zeros((loop.time.size, 0)), np.zeros(0))
         self._solve(np.array([value for _, value, _ in guess]) / self.sizes)
 
     def _solve(self, first: np.ndarray) -> None:
         model = self.model
         self.residuals(first, must=True)
-        best = self._descent(first)
+        best = self._descent(first, ROUGH)
         for factor in STARTS:
             start = best.at.copy()
             start[: self.cycles] *= factor
-            if (other := self._minimum(start, best.jacobian)).cost < best.cost - CONVERGED:
-                best = self._descent(other.at)
+            other = self._minimum(start, best.jacobian, 0)
+            if other.cost < best.cost + NEARBY and (other := self._minimum(*other[1:])).cost < best.cost - CONVERGED:
+                best = other
+        self._whiten(best.at)
+        best = self._descent(best.at)
         points = self._profiles(best)
         while (lowest := min(points, key=lambda point: point.cost)).cost < best.cost - CONVERGED:
             best = self._descent(lowest.at)
@@ -198,24 +262,25 @@ class LoopFit:
         at_limit, ends = ends.min(axis=0) - self.bounds[0] < 1e-9, ends - best.at
         offsets = self.names.index("displacement_offset")  # friction and rig stand before them
         while moved > MOVED and model.points < FINEST * POINTS:
-            model.points *= 2
+            model.points *= FINER
             before, best = best, self._minimum(best.at, best.jacobian if math.isinf(moved) else None)
             moved = float(np.max((np.abs(best.at - before.at) / self.deviations)[:offsets]))
         self.moved = moved
         self._set_bars(best)
-        bars = SIGMA * self.deviations
+        bars = self.sigma * self.deviations
         bars[: self.cycles] = 0.0
         low = np.maximum(self.found + np.minimum(ends.min(axis=0), -bars), self.bounds[0])
         self.low = np.where(at_limit, self.bounds[0], low)
         self.high = self.found + np.maximum(ends.max(axis=0), bars)
 
-    def _descent(self, at: np.ndarray) -> Minimum:
-        """The minimum that is found from a start, with the Jacobian by differences there."""
-        cost = math.inf
+    def _descent(self, at: np.ndarray, gain: float = CONVERGED) -> Minimum:
+        """The minimum that is found from a start, with a Jacobian by differences, when another gains less than this."""
+        first = self.residuals(at)
+        cost = float(first @ first)
         for _ in range(ROUNDS):
             found = self._minimum(at)
             at, before, cost = found.at, cost, found.cost
-            if before - cost < CONVERGED:
+            if before - cost < gain:
                 break
         return found
 
@@ -225,22 +290,49 @@ class LoopFit:
         named = dict(zip(self.names[self.cycles :], given[self.cycles :].tolist(), strict=True))
         return {**self.fixed, **named, "friction": given[: self.cycles].tolist()}
 
-    def compared(self, unknowns: np.ndarray) -> np.ndarray:
-        """Distances of the samples, displacements of their feet and forces there, shape (3, n)."""
+    def _whiten(self, at: np.ndarray) -> None:
+        """Take the errors of the turning points into account, as they are at these unknowns."""
+        model, loop = self.model, self.model.loop
+        here, turns = self.compared(at)[0], len(loop.shares)
+        step = STEPS["displacement_offset"] * float(np.ptp(loop.displacement))
+        moved = np.zeros((turns, loop.time.size))
+        for first in range(min(BEHIND, turns)):  # turning points so far apart move different branches
+            ends = loop.ends.copy()
+            ends[1 + first : -1 : BEHIND, 1] += step
+            self.model = replace(model, loop=replace(loop, ends=ends), known={})
+            change = (self.compared(at)[0] - here) / step
+            model.solved, self.model = self.model.solved, model
+            for turn in range(first, turns, BEHIND):
+                behind = (loop.branch > turn) & (loop.branch <= turn + BEHIND)
+                if model.start == "cycle" and turn < 2:  # they lead to the first branch
+                    behind |= loop.branch == 0
+                moved[turn, behind] = change[behind]
+        lift = 1e-3 * loop.noise[0]
+        normal = (self.compared(at, lift)[0] - here) / lift
+        variance = loop.noise[0] ** 2
+        self.whitening = Whitening.of(
+            -moved.T, (variance * normal * loop.shares).T, variance * loop.shares @ loop.shares.T
+        )
+
+    def compared(self, unknowns: np.ndarray, lift: float = 0.0) -> np.ndarray:
+        """Distances of the samples, displacements of their feet and forces there, shape (3, n).
+
+        A `lift` is added to the displacements of the samples.
+        """
         value, loop = self.values(unknowns), self.model.loop
         curves = self.model.curves(
             value["friction"], value["compliance"], value["clearance"], value["displacement_offset"],
             value["displacement_drift"],
         )  # fmt: skip
-        moved = loop.displacement - value["displacement_offset"] - value["displacement_drift"] * loop.time
+        moved = loop.displacement + lift - value["displacement_offset"] - value["displacement_drift"] * loop.time
         acting = loop.force - value["force_offset"] - value["force_drift"] * loop.time
         found: np.ndarray = loop.distances([(x, value["scale"] * y) for x, y in curves], moved, acting)
         return found
 
     def residuals(self, unknowns: np.ndarray, must: bool = False) -> np.ndarray:
-        """The distances of the samples. With `must` a model without a state raises its error."""
+        """The distances, made independent by the whitening. With `must` a model without a state raises its error."""
         try:
-            return self.compared(unknowns)[0]
+            return self.whitening(self.compared(unknowns)[0])
         except SolveError:
             if must:
                 raise
@@ -258,47 +350,65 @@ class LoopFit:
     def _minimum(self, first: np.ndarray, jacobian: np.ndarray | None = None, kept: int | None = None) -> Minimum:
         """The least sum of squares, where it is, and the Jacobian with Broyden's updates on the way.
 
-        The Jacobian is one by differences unless given. The unknown with the number `kept` stays.
+        The Jacobian is one by differences unless given. The unknown with the number `kept` stays. The method is that
+        of Levenberg and Marquardt. It ends where a step promises nothing: a search for more costs solutions.
         """
         at = np.clip(first, np.nextafter(self.bounds[0], np.inf), self.bounds[1])
         matrix = self._jacobian(at, kept) if jacobian is None else jacobian.copy()
+        here, damping, failed = self.residuals(at), 0.0, 0
+        for _ in range(TRIALS):
+            step = self._step(at, here, matrix, damping, kept)
+            promised = here + matrix @ step
+            if here @ here - promised @ promised < CONVERGED:
+                break
+            there = self.residuals(at + step)
+            if abs(there[0]) != LOST:
+                matrix += np.outer(there - promised, step) / (step @ step)
+            if there @ there < here @ here:
+                at, here, damping, failed = at + step, there, 0.1 * damping, 0
+            else:
+                damping, failed = max(10.0 * damping, 0.3), failed + 1
+                if failed == FAILURES:
+                    break
+        return Minimum(float(here @ here), at, matrix)
+
+    def _step(
+        self, at: np.ndarray, here: np.ndarray, matrix: np.ndarray, damping: float, kept: int | None
+    ) -> np.ndarray:
+        """The step (unknowns,) to the least damped sum of squares of a linear model within the bounds."""
         free = np.flatnonzero(np.arange(at.size) != kept)
-        last: list[np.ndarray] = []
-
-        def distances(unknowns: np.ndarray) -> np.ndarray:
-            at[free] = unknowns
-            found = self.residuals(at)
-            if last and (step := at - last[0]).any() and abs(found[0]) != LOST:
-                matrix[:] += np.outer(found - last[1] - matrix @ step, step) / (step @ step)
-            last[:] = [at.copy(), found]
-            return found
-
-        found = optimize.least_squares(
-            distances, at[free], lambda _: matrix[:, free], self.bounds[:, free], x_scale="jac", xtol=1e-6,
-            ftol=CONVERGED / len(matrix), max_nfev=10,
-        )  # fmt: skip
-        at[free] = found.x
-        return Minimum(2.0 * float(found.cost), at, matrix)
+        size = np.linalg.norm(matrix[:, free], axis=0)
+        size[size == 0.0] = 1e-300
+        rows = np.vstack([matrix[:, free] / size, math.sqrt(damping) * np.eye(free.size)])
+        room = (self.bounds[:, free] - at[free]) * size
+        room[0], room[1] = np.minimum(room[0], -1e-300), np.maximum(room[1], 1e-300)
+        target = np.concatenate([-here, np.zeros(free.size)])
+        found = np.zeros(at.size)
+        found[free] = optimize.lsq_linear(rows, target, room, method="bvls").x / size
+        return found
 
     def _set_bars(self, best: Minimum) -> None:
         """Set the minimum, its scatter, covariance and deviations. The columns get the size 1 before they are inverted.
 
-        Samples that lie closer than their noise make no bar smaller.
+        Samples that lie closer than their noise make no bar smaller. Noise that a filter has smoothed makes them wider.
         """
         self.cost, self.found, jacobian = best
         self.scatter = math.sqrt(self.cost / max(len(jacobian) - self.found.size, 1))
+        self.widened = max(self.scatter, 1.0) * math.sqrt(correlated_samples(self.residuals(best.at)))
         length = np.linalg.norm(jacobian, axis=0)
         length[length == 0.0] = 1e-300
         unit = jacobian / length
-        self.covariance = (
-            max(self.scatter, 1.0) ** 2 * np.linalg.pinv(unit.T @ unit, rcond=1e-14) / np.outer(length, length)
-        )
+        self.covariance = self.widened**2 * np.linalg.pinv(unit.T @ unit, rcond=1e-14) / np.outer(length, length)
         self.deviations = np.sqrt(np.diag(self.covariance))
 
     def _profiles(self, best: Minimum) -> list[Minimum]:
         """The points at both ends of the interval of each friction, and perhaps one with a smaller sum of squares."""
         self._set_bars(best)
         return [point for unknown in range(self.cycles) for point in self._profile(unknown, best)]
+
+    def _away(self, point: Minimum, best: Minimum) -> float:
+        """How much larger than the least one a sum of squares is, in standard deviations of one unknown."""
+        return math.sqrt(max(point.cost - best.cost, 1e-4)) / self.widened
 
     def _profile(self, unknown: int, best: Minimum) -> list[Minimum]:
         """The two points at which the sum of squares is larger by that of 95 %, or one at which it is less.
@@ -307,27 +417,40 @@ class LoopFit:
         less of the contact slips, the less the loop tells.
         """
         low, high = self.bounds[:, unknown]
-        ends = []
+        ends, reach = [], WIDER * self.sigma
         for side in (-1.0, 1.0):
-            step, inside, outside = SIGMA * self.deviations[unknown], (0.0, 0.0), (math.inf, math.inf)
+            step, inside, outside = reach * self.deviations[unknown], (0.0, 0.0), (math.inf, math.inf)
             for _ in range(TRIES):
                 place = float(np.clip(best.at[unknown] + side * step, low, high))
                 start = best.at.copy()
                 start[unknown] = place
                 point = self._minimum(start, best.jacobian, unknown)
-                if point.cost - best.cost > (SIGMA - CLOSE) ** 2:  # it may be less with a Jacobian from there
+                if abs(self._away(point, best) - reach) < CLOSE:  # it may be less with a Jacobian from there
                     point = self._minimum(point.at, None, unknown)
                 if point.cost < best.cost - CONVERGED:
                     return [point]
                 step = abs(place - best.at[unknown])
-                size = math.sqrt(max(point.cost - best.cost, 1e-4)) / max(self.scatter, 1.0)
-                if abs(size - SIGMA) < CLOSE or (size < SIGMA and place in (low, high)):
+                size = self._away(point, best)
+                if abs(size - reach) < CLOSE or (size < reach and place in (low, high)):
                     break
-                inside, outside = ((step, size), outside) if size < SIGMA else (inside, (step, size))
-                step *= float(np.clip(SIGMA / size, 1.2, 3.0))
+                inside, outside = ((step, size), outside) if size < reach else (inside, (step, size))
+                step *= float(np.clip(reach / size, 1.2, 3.0))
                 if math.isfinite(outside[0]):
-                    part = float(np.clip((SIGMA - inside[1]) / (outside[1] - inside[1]), 0.2, 0.8))
+                    part = float(np.clip((reach - inside[1]) / (outside[1] - inside[1]), 0.2, 0.8))
                     step = inside[0] + part * (outside[0] - inside[0])
-            way_on = min(SIGMA / size, 1.0 + CLOSE)
+            way_on = min(reach / size, 1.0 + CLOSE)
             ends.append(point._replace(at=np.clip(best.at + way_on * (point.at - best.at), *self.bounds)))
         return ends
+
+
+def correlated_samples(distances: np.ndarray) -> float:
+    """Return how many samples count as one: 1 + 2 sum of the correlations of distances (n,), up to the first small one.
+
+    It is 1 for white noise.
+    """
+    n = distances.size
+    spectrum = np.abs(np.fft.rfft(distances, 2 * n)) ** 2
+    related = np.fft.irfft(spectrum)[1 : n // 4]
+    related /= max(float(distances @ distances), 1e-300)
+    small = np.flatnonzero(related < RELATED / math.sqrt(n))
+    return 1.0 + 2.0 * float(related[: small[0] if small.size else related.size].sum())

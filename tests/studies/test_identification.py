@@ -45,7 +45,7 @@ def test_a_loop_gives_friction_rig_and_offsets() -> None:
 
 @pytest.mark.gate
 def test_drift_is_fitted() -> None:
-    found = fitted(replace(WIDE, drift=0.05), fit=["stiffness", "drift"], nodes=41)
+    found = fitted(replace(WIDE, drift=0.05), fit=["stiffness", "drift"], nodes=25)
     size = np.ptp(WIDE.clean()[1]) / 2.0
     assert_inside(found, friction=0.68, stiffness=RIG, displacement_drift=4e-6, force_drift=0.05 * size)
 
@@ -63,7 +63,7 @@ def test_scale_is_fitted_with_a_known_rig() -> None:
     ("measured", "options"),
     [
         (replace(WIDE, begins=1.1, cycles=1.5), {"start": "cycle"}),
-        (Measured(6e-3, 60, 0.005, rig=30e3 / THICKNESS, names=("rotation", "M")), {"nodes": 31}),
+        (Measured(6e-3, 60, 0.005, rig=30e3 / THICKNESS, names=("rotation", "M")), {"nodes": 25}),
         (replace(WIDE, samples=100, cycles=0.7), {}),
     ],
     ids=["in a cycle", "rotation", "one turning point"],
@@ -74,7 +74,7 @@ def test_other_loops(measured: Measured, options: dict[str, Any]) -> None:
 
 @pytest.mark.gate
 def test_each_cycle_has_its_friction() -> None:
-    found = fitted(replace(WIDE, cycles=2.25, changes=(0.0, 0.15)), by_cycle=True, nodes=41)
+    found = fitted(replace(WIDE, samples=40, changes=(0.0, 0.15), nodes=61), by_cycle=True, nodes=25)
     assert [name for name in found.estimates if name.startswith("friction")] == ["friction 1", "friction 2"]
     for each, true in zip(found.frictions, (0.68, 0.782), strict=True):
         assert each.low * 0.97 < true < each.high * 1.03

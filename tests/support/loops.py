@@ -27,7 +27,8 @@ class Measured:
     """What a rig does.
 
     `travel` is the amplitude of the displacement at the far end of the rig, m or rad, `samples` those of a cycle,
-    `noise` and `drift` are parts of the amplitudes. `begins` is a part of a cycle that the record leaves out.
+    `noise` and `drift` are parts of the amplitudes. `begins` is a part of a cycle that the record leaves out. An
+    amplifier has averaged the noise of `filtered` samples.
     """
 
     travel: float
@@ -41,6 +42,7 @@ class Measured:
     names: tuple[str, str] = ("ux", "Q")
     changes: tuple[float, ...] = ()
     nodes: int = 121
+    filtered: int = 1
 
     def joint(self) -> Problem:
         """The joint in its rig."""
@@ -67,7 +69,9 @@ class Measured:
         for name, values, offset in zip(self.names, clean, (0.2, 0.03), strict=True):
             size = 0.5 * float(np.ptp(values))
             drift = self.drift * np.linspace(0.0, 1.0, values.size)
-            found[name] = values + size * (offset + drift + self.noise * rng.normal(size=values.size))
+            white = rng.normal(size=values.size + self.filtered - 1)
+            noise = np.convolve(white, np.full(self.filtered, self.filtered**-0.5), "valid")
+            found[name] = values + size * (offset + drift + self.noise * noise)
         return found
 
     def guess(self) -> Problem:
