@@ -47,7 +47,7 @@ def test_a_file_a_figure_and_a_report(lug, monkeypatch):
     monkeypatch.setattr(compliance, "DOUBTFUL", 1e-2)  # the nodes are few here
     out, err = said("compliance", lug, "--plot", "small.svg")
     found = Compliance.from_file("small.json")
-    assert (found.order, found.nu, found.hole_radius, list(found.columns)) == (6, 0.3, 1.0, ["syy"])
+    assert (found.order, found.nu, found.hole_radius, list(found.columns)) == (6, 0.3, 1.0, ["syy", "temperature"])
     assert "a small plate" in found.made_by
     assert "bottom" in Path("small.svg").read_text(encoding="utf-8")
     assert [line.split("  ")[0] for line in out.splitlines()[:-1]] == [
