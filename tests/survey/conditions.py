@@ -484,7 +484,8 @@ def _interface_direction(result: Result, place: int) -> tuple[float, int]:
         return 0.0, -1
     size = slip_size(states)
     wrong = max(wrong_slips(states), key=lambda found: found[2], default=(0, 0, 0.0))
-    if wrong[2] <= TOLERANCE * size:
+    rounding = 8.0 * np.finfo(float).eps * max(float(np.abs(state.slip).max()) for state in states)
+    if wrong[2] <= max(TOLERANCE * size, rounding):  # where all nodes stick, all changes are rounding
         return 0.0, -1
     before, after = result.states[wrong[0] - 1], result.states[wrong[0]]
     begin = before.fraction if before.step == after.step else 0.0
