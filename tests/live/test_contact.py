@@ -27,7 +27,7 @@ from fastpin.states.state import State
 from tests.support.checks.body_cases import ring_compliance
 from tests.support.live_pages import FREE, NODES, Page, contact, floats, solved
 from tests.support.seats import TEXT as BUSH_SLIPS
-from tests.support.tiers import some_survey
+from tests.support.tiers import gate, some_survey
 
 P, Q = 2.42e6, 7.26e5
 MOST_LEFT = contact_module.MOST_LEFT
@@ -75,7 +75,7 @@ def test_a_page_begins_with_the_first_corner_of_the_case() -> None:
     json.dumps(page.latest, allow_nan=False)
 
 
-@pytest.mark.parametrize("text", [None, BUSH_SLIPS], ids=["built in", "bush that slips"])
+@pytest.mark.parametrize("text", [None, *gate(BUSH_SLIPS)], ids=["built in", "bush that slips"])
 def test_a_drag_has_the_states_of_solve_bit_by_bit(text: str | None) -> None:
     page = Page(contact(text))
     drag(page, 5)
