@@ -46,7 +46,7 @@ _SYNONYMS: dict[str, str] = {
     "pin": "pin_material disk disc",
     "plate": "plate_material lug_material",
     # contact
-    **{name: field.also for name, field in FIELDS.items()},
+    **{name: field.also for name, field in FIELDS.items() if field.also},
     "load_parameter": "lp l_p",
     "plane": "state plane_state stress_state",
     "bore_radius": "radius inner_radius r_i ri bore r_bore hollow",

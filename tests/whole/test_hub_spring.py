@@ -129,7 +129,7 @@ CASE = EXAMPLE.replace('pin_load = "body"  ', 'pin_load = "centre"').replace('ro
 def test_case_file_and_tables():
     case = parse_case(CASE.replace("nodes = 401", "nodes = 61"))
     assert (case.problem.rotation, case.problem.hub_stiffness) == ("spring", 2e5)
-    assert "spring of stiffness 200 kN/rad at radius 0.004 m" in describe(case)
+    assert "spring of stiffness 200 kN/rad at radius 4 mm" in describe(case)
     assert "of stiffness 200000 at radius 0.004" in repr(case.problem)
     result = solve(case.problem, case.history, **case.options.keywords())
     assert document(case, result)["problem"]["hub_stiffness"] == 2e5
