@@ -27,7 +27,7 @@ ROUNDING = {
     "mirror", "conditions", "parts", "stresses", "bodies, exact", "gaps, exact", "friction, exact", "wear, exact",
     "cracks, exact", "laminates, exact",
 }  # fmt: skip
-SLOW = "all round", "further bodies", "further seats", "further wear"
+SLOW = "all round", "further bodies", "further coupled", "further seats", "further wear"
 STATED = {"elements, frictionless", "elements, monotonic", "elements, fretting", "laminates, elements"}
 
 
