@@ -13,7 +13,7 @@ from fastpin.assess import outputs
 from fastpin.damage.criteria import Criterion, criterion_title
 from fastpin.damage.margins import MOST_STOPS as MOST_STOPS
 from fastpin.damage.margins import reserve_margins
-from fastpin.damage.spectrum import bodies_with_lives
+from fastpin.damage.spectrum import SpectrumCycles, bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.model import Case, Problem
 from fastpin.model.angles import from_bottom
@@ -191,10 +191,10 @@ class _Body(NamedTuple):
     over: Mapping[str, float]
 
     @property
-    def cycles(self) -> list[damage.spectrum.SpectrumCycles]:
+    def cycles(self) -> list[SpectrumCycles]:
         """The counted cycles that do the most damage, one by one."""
         columns = (each[:MOST_LISTED].tolist() for each in self.found.cycles)
-        return list(map(damage.spectrum.SpectrumCycles._make, zip(*columns, strict=True)))
+        return list(map(SpectrumCycles._make, zip(*columns, strict=True)))
 
 
 OF_BODY = (

@@ -192,8 +192,9 @@ class Bushing(PlateBody):
         found = super().toml()
         if self.bonded:
             del found["bonded"]
-        inside = found.pop("inside").toml()
-        return found | {"ring_outer_radius" if name == "outer_radius" else name: inside[name] for name in inside}
+        inside, material = found.pop("inside").toml(), found.pop("material").toml()
+        inside = {"ring_outer_radius" if name == "outer_radius" else name: value for name, value in inside.items()}
+        return material | found | inside
 
     # -- checks and materials
 

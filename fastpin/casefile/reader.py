@@ -31,8 +31,8 @@ from fastpin.model.fields import FIELDS
 from fastpin.model.keys import CASE
 from fastpin.model.laminate import LAMINATE_KEYS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
-from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, NO_UNITS, Problem, checked_thickness
-from fastpin.model.unit_systems import SI
+from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
+from fastpin.model.unit_systems import NO_UNITS, SI
 from fastpin.model.units import PER_THICKNESS
 from fastpin.model.wear import WEAR_KEYS
 
@@ -321,7 +321,7 @@ def _problem(
         contact.require(key, " (or give load_parameter)" if key in ("hole_radius", "clearance") else "")
     values: dict[str, Any] = {"pair": pair, **{key: contact.number(key) for key in needed if key != "friction"}}
     chosen = {name: contact.choice(name, field.choices) for name, field in FIELDS.items() if field.choices}
-    sizes, thickness = _sizes_and_thickness(contact)
+    sizes, shown = _sizes_and_units(contact)
     if chosen["rotation"] == "spring" and "hub_stiffness" not in contact:
         contact.report('hub_stiffness: a pin with rotation = "spring" needs the stiffness of the spring', "rotation")
     radius = values.get("hole_radius", 1.0)
@@ -335,14 +335,10 @@ def _problem(
     values["gap"] = read_gap(source.section("gap"), folder, given_radius, dimensionless)
     is_complete = None not in chosen.values()
     if is_complete:
-        values |= {**chosen, **sizes, **thickness}
-        if source.units != SI:
-            values["unit_system"] = source.units
+        values |= {**chosen, **sizes, **shown}
     harmless = {
         "hole_radius": MOST_RADIUS,
-        "clearance": 0.0,
-        "load_parameter": 0.0,
-        "friction": 0.0,
+        **dict.fromkeys(("clearance", "load_parameter", "friction"), 0.0),
         **_SIZES,
         "hub_stiffness": unit if chosen["rotation"] == "spring" else None,
         "plate_body": INFINITE_PLATE,
@@ -353,19 +349,23 @@ def _problem(
     return problem if is_complete else None
 
 
-def _sizes_and_thickness(contact: Section) -> tuple[dict[str, Any], dict[str, float]]:
-    """The numbers with a default, and the thickness if it is given. With it, a stiffness is that of the whole pin."""
+def _sizes_and_units(contact: Section) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The numbers with a default; the system of units and the thickness if they are given.
+
+    With a thickness, a stiffness is that of the whole pin.
+    """
+    shown: dict[str, Any] = {} if contact.units == SI else {"unit_system": contact.units}
     sizes = _SIZES | {name: contact.number(name) for name in _SIZES if name in contact}
     thickness = None if "thickness" not in contact else contact.checked("thickness", checked_thickness)
     if thickness is None:
-        return sizes, {}
+        return sizes, shown
     if "load_parameter" in contact:
         contact.report(f"thickness: {NO_THICKNESS}", "thickness")
-        return sizes, {}
+        return sizes, shown
     for name, value in sizes.items():
         if value is not None and FIELDS[name].kind in PER_THICKNESS:
             sizes[name] = value / thickness
-    return sizes, {"thickness": thickness}
+    return sizes, shown | {"thickness": thickness}
 
 
 def _about(section: Section) -> About:

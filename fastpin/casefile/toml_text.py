@@ -7,14 +7,13 @@ lines of all keys itself, and parses again without a faulty line.
 from __future__ import annotations
 
 import contextlib
-import gc
 import re
 import tomllib
-from collections.abc import Callable, Collection, Iterator, Mapping
-from functools import cached_property
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
+from fastpin.casefile.toml_lines import HEADER, KEY_LINE, STRING_OR_COMMENT, KeyPath, Lines, uncollected
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import as_toml, choice, instance, number, shortened, why_unreadable
 from fastpin.model.inputs import HDF5_SIGNATURE, open_input
@@ -55,9 +54,6 @@ KINDS = {
     "joint file": (("joint",), "joint"),
 }
 """The sections that only one kind of file has, and the command for such a file."""
-
-KeyPath = tuple[str | int, ...]
-"""The keys and indices that lead to a value: ("load", 0, "P")."""
 
 T = TypeVar("T")
 
@@ -154,13 +150,13 @@ class CaseText:
             raise InputError("text", f"must be TOML text, not {as_toml(text)}")
         lines = text.replace("\r\n", "\n").split("\n")
         most_points = max(line.count(".") for line in lines)  # a key stands on one line
-        if most_points >= MOST_PARTS and _LONG_KEY.search(_STRING_OR_COMMENT.sub('""', text)):
+        if most_points >= MOST_PARTS and _LONG_KEY.search(STRING_OR_COMMENT.sub('""', text)):
             self.readable = False
-            self._lines = _Lines([])
+            self._lines = Lines([])
             self._add(0, f"a key has more than {MOST_PARTS} parts, joined by points")
             self.root = Section(self, (), {})
             return
-        self._lines = _Lines(lines.copy())
+        self._lines = Lines(lines.copy())
         self.root = Section(self, (), self._parse(lines))
 
     def _parse(self, lines: list[str]) -> dict[str, Any]:
@@ -169,7 +165,7 @@ class CaseText:
         size = sum(map(len, lines)) + len(lines)
         while True:
             try:
-                with _uncollected():
+                with uncollected():
                     tables = tomllib.loads("\n".join(lines))
                 break
             except RecursionError:
@@ -279,7 +275,7 @@ class CaseText:
         """The end of a message that has numbers in SI units, while the text has them in other units."""
         if self.units == SI:
             return ""
-        given, used = (_value_at(table, place) for table in (self._given, self.root.table))
+        given, used = _value_at(self._given, place), _value_at(self.root.table, place)
         if isinstance(used, (int, float)) and (f"{used:g}" in message or as_toml(used) in message):
             return "" if used == given else f"; in SI units: the file has {as_toml(given)}, in {self.units}"
         return "; in SI units" if isinstance(used, (list, dict)) and used != given and "must" in message else ""
@@ -449,98 +445,6 @@ def written(name: str, value: object) -> str:
 
 
 _LONG_KEY = re.compile(rf"""(?<![\w"'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
-_KEY = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
-_KEY_LINE = re.compile(rf"\s*({_KEY}(?:\s*\.\s*{_KEY})*)\s*=(.*)")
-_HEADER = re.compile(rf"\s*(\[\[?)\s*({_KEY}(?:\s*\.\s*{_KEY})*)\s*\]")
-_STRING_OR_COMMENT = re.compile(
-    r'''
-    """ (?:\\.|.)*? (?:"""|\Z)
-    | \'\'\' .*? (?:\'\'\'|\Z)
-    | " (?:\\[^\n]|[^"\\\n])* "?
-    | ' [^'\n]* '?
-    | \# [^\n]*
-    ''',
-    re.DOTALL | re.VERBOSE,
-)
-
-
-@contextlib.contextmanager
-def _uncollected() -> Iterator[None]:
-    """Let Python look for no unreachable objects: a parser makes many tables and no such objects.
-
-    The search takes two fifths of the time of a text of 2 MB.
-    """
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
-
-
-class _Lines:
-    """The lines of a text. Places in them are looked up for a fault only."""
-
-    def __init__(self, lines: list[str]) -> None:
-        self._all = lines
-
-    @cached_property
-    def located(self) -> tuple[dict[KeyPath, int], dict[int, KeyPath], dict[int, int]]:
-        """The lines of all headers and keys, see :func:`_locate`."""
-        with _uncollected():
-            return _locate(self._all)
-
-
-def _locate(lines: list[str]) -> tuple[dict[KeyPath, int], dict[int, KeyPath], dict[int, int]]:
-    """The lines of all headers and keys.
-
-    Returns
-    -------
-    places : dict
-        Line of every header and key. Of several the first line counts.
-    keys : dict
-        Place of the key that begins on a line.
-    starts : dict
-        For every line after the first of a value of several lines: the line on which the value begins.
-    """
-    places: dict[KeyPath, int] = {}
-    keys: dict[int, KeyPath] = {}
-    starts: dict[int, int] = {}
-    counts: dict[str, int] = {}
-    section: KeyPath = ()
-    begin, depth = 0, 0
-    for line_number, (line, change) in enumerate(zip(lines, _nesting(lines), strict=True), start=1):
-        header = _HEADER.match(line)
-        key = None if header else _KEY_LINE.match(line)
-        if depth > 0:
-            starts[line_number] = begin
-            depth = max(depth + change, 0)
-        elif header:
-            section = _parts(header[2])
-            if header[1] == "[[":
-                counts[header[2]] = counts.get(header[2], -1) + 1
-                places.setdefault(section, line_number)
-                section = (*section, counts[header[2]])
-            places.setdefault(section, line_number)
-        elif key:
-            begin, depth = line_number, max(change, 0)
-            keys[line_number] = (*section, *_parts(key[1]))
-            places.setdefault(keys[line_number], line_number)
-    return places, keys, starts
-
-
-def _parts(dotted: str) -> KeyPath:
-    if '"' not in dotted and "'" not in dotted:
-        return tuple(map(str.strip, dotted.split(".")))
-    return tuple(part[0].strip("\"'") for part in re.finditer(_KEY, dotted))
-
-
-def _nesting(lines: list[str]) -> list[int]:
-    """Number of opening minus closing brackets of each line, without the brackets in strings and comments."""
-    # A string becomes a pair of brackets around its line ends, so that it counts as nested. A comment becomes "[]".
-    bare = _STRING_OR_COMMENT.sub(lambda found: "[" + "\n" * found[0].count("\n") + "]", "\n".join(lines))
-    return [len(re.findall(r"[\[{]", line)) - len(re.findall(r"[\]}]", line)) for line in bare.split("\n")]
 
 
 def _mark_faulty(tables: dict[str, Any], place: KeyPath) -> None:
@@ -569,9 +473,9 @@ def _syntax_message(message: str, lines: list[str]) -> tuple[str, int]:
     if twice := re.match(r"Cannot declare \((.*?),?\) twice", reason):
         name = twice[1].replace("'", "").replace(", ", ".")
         return f"the section [{shortened(name)}] appears twice{_block_hint(name)}", line
-    key = _KEY_LINE.match(lines[line - 1])
+    key = KEY_LINE.match(lines[line - 1])
     if reason.startswith("Cannot overwrite"):
-        header = _HEADER.match(lines[line - 1])
+        header = HEADER.match(lines[line - 1])
         name = header[2] if header else key[1] if key else ""
         return f'"{shortened(name)}" is given twice{_block_hint(name)}', line
     value = shortened(key[2].split("#")[0]) if key else ""

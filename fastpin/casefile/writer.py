@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.bodies.body import BodyBase
-from fastpin.model import Case, LoadHistory, Material, Problem, Profile, SolveOptions, checks, loads
+from fastpin.model import Case, LoadHistory, Problem, Profile, SolveOptions, checks, loads
 from fastpin.model.case import BESIDE, beside_of
 from fastpin.model.fields import FIELDS
 from fastpin.model.keys import CASE
@@ -38,18 +37,18 @@ def case_text(case: Case) -> str:
         If `case` is no Case, or the plate is a compliance, which has a file of its own.
     """
     checks.instance("case", case, Case, "a Case")
-    problem = case.problem
+    problem, options = case.problem, {each.name: getattr(case.options, each.name) for each in fields(case.options)}
     tables = {
         "about": case.about.given(),
         "pin": problem.pair.pin.toml(),
         "plate": problem.pair.plate.toml(),
         "contact": _contact(problem),
         "gap": {name: profile.toml() for name, profile in problem.gap.given.items()},
-        **{name: _body(body) for name, body in problem.given_bodies.items()},
+        **{name: body.toml() for name, body in problem.given_bodies.items()},
         "load": _loads(case.history),
         "wear": {} if case.wear is None else case.wear.toml(),
         **{name: BESIDE[name].written(value) for name, value in beside_of(case).items()},
-        "solve": _options(case.options),
+        "solve": {name: value for name, value in options.items() if value != getattr(SolveOptions(), name)},
     }
     head = {"title": case.title, "units": "" if problem.unit_system == SI else problem.unit_system}
     blocks = [[f"{name} = {_value(words)}" for name, words in head.items() if words]]
@@ -72,22 +71,10 @@ def _contact(problem: Problem) -> dict[str, Any]:
     return found
 
 
-def _body(body: BodyBase) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for key, value in body.toml().items():
-        found |= value.toml() if isinstance(value, Material) else {key: value}
-    return found
-
-
 def _loads(history: LoadHistory) -> dict[str, list[float]]:
     given = np.any([np.any(~np.isnan(block.given), axis=0) for block in history.blocks], axis=0)
     columns = zip(loads.LOADS, history.values().T.tolist(), given, strict=True)
     return {name: column for name, column, is_given in columns if is_given}
-
-
-def _options(options: SolveOptions) -> dict[str, Any]:
-    given = {each.name: getattr(options, each.name) for each in fields(options)}
-    return {name: value for name, value in given.items() if value != getattr(SolveOptions(), name)}
 
 
 def _lines(value: object) -> str:

@@ -80,7 +80,9 @@ def parse_joint(text: str, name: str = "joint file") -> JointFile:
 
 
 def _joint_file(source: CaseText) -> JointFile | None:
-    source.to_si(JOINT | {"load": {ANY: "force", **dict.fromkeys(_stresses(source), "traction")}}, True)
+    names = [name for block in source.blocks("load") for name in block.table]
+    stresses = [name for name in names if name.rpartition(".")[2] in REMOTE_NAMES]
+    source.to_si(JOINT | {"load": {ANY: "force", **dict.fromkeys(stresses, "traction")}}, True)
     source.check_sections(_KEYS, ("plate", "pin", "load"))
     title, settings = source.root.checked("title", string) or "", source.section("joint")
     plane = settings.choice("plane", ("stress", *(word for word in PLANES if word != "stress")))
@@ -108,12 +110,6 @@ def _joint_file(source: CaseText) -> JointFile | None:
         return None
     load_values(joint, corners)
     return JointFile(joint, corners * times, title, nodes, harmonics)
-
-
-def _stresses(source: CaseText) -> list[str]:
-    """The loads that are stresses."""
-    names = [name for block in source.blocks("load") for name in block.table]
-    return [name for name in names if name.rpartition(".")[2] in REMOTE_NAMES]
 
 
 def _required(source: CaseText, name: str) -> list[Section]:

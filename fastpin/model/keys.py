@@ -18,7 +18,7 @@ ITSELF, ANY, ROW = "", "*", "row"
 row where it is a list of rows.
 """
 
-Kinds = str | Mapping[str, Any]
+KeyKinds = str | Mapping[str, Any]
 """The kind of a number and of all numbers in a list, or the kinds of the keys of a table."""
 
 
@@ -106,7 +106,7 @@ def kind_of(field: str) -> str:
     return str(kinds.get(ITSELF, "") if isinstance(kinds, Mapping) else kinds)
 
 
-def converted(value: Any, kinds: Kinds, way: Callable[[str, float], float], unit: float | None = None) -> Any:
+def converted(value: Any, kinds: KeyKinds, way: Callable[[str, float], float], unit: float | None = None) -> Any:
     """Return a value of a file with all its numbers changed.
 
     Parameters

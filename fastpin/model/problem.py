@@ -35,7 +35,7 @@ from fastpin.model.materials import LEAST_SQUEEZE, MOST_EXPANSION, MaterialPair
 from fastpin.model.profile import NO_GAP, InitialGap, Profile, ProfileLike, is_pair, widest_place
 from fastpin.model.profile_terms import Term
 from fastpin.model.synonyms import explains_attributes, explains_keywords
-from fastpin.model.unit_systems import SI, checked_system
+from fastpin.model.unit_systems import NO_UNITS, SI, checked_system
 
 Rotation = Literal["free", "fixed", "spring"]
 """Kinds of pin rotation."""
@@ -57,9 +57,6 @@ MOST_GAUGE = 1e30
 
 NO_THICKNESS = "has no meaning in a dimensionless problem, whose loads are in units of F"
 """Why a dimensionless problem refuses a thickness."""
-
-NO_UNITS = "has no meaning in a dimensionless problem, whose numbers have no units"
-"""Why a dimensionless problem refuses a system of units."""
 
 DriveKind = Literal["force", "ux", "uy", "both"]
 """Ways to drive the pin: by the forces P and Q, or by displacements in place of Q (ux), of P (uy) or of both."""
@@ -121,14 +118,12 @@ class Problem:
     plate_body : PlateBody
         An infinite plate, a ring lug, a bush in either of them, or any finite plate; a class of :mod:`fastpin.bodies`.
     thickness : float, optional
-        Thickness of pin and plate, m. It changes no state. Printed texts then have forces in N, moments in N m and
-        energies in J. Loads and results in Python and HDF5 stay per thickness:
-        :meth:`fastpin.LoadHistory.per_thickness` converts loads. In case files loads are in N and N m then. Not for a
-        dimensionless problem.
+        Thickness of pin and plate, m. It changes no state. Loads in case files are in N and N m then, and so are
+        printed texts, with energies in J. Loads and results in Python and HDF5 stay per thickness, see
+        :meth:`fastpin.LoadHistory.per_thickness`. Not for a dimensionless problem.
     unit_system : str
-        Units of printed texts and figures: "SI", with prefixes, or a length, a force and a stress, such as
-        "mm, N, MPa" or "in, lbf, ksi". It changes no state, and numbers in Python and HDF5 are in SI units. It is the
-        key ``units`` of a case file, whose numbers are in these units. Not for a dimensionless problem.
+        Units of printed texts and figures, "SI" or such as "mm, N, MPa": the key ``units`` of a case file. It changes
+        no state, and numbers in Python and HDF5 are in SI units. Not for a dimensionless problem.
     gap : InitialGap
         Initial gap beside the clearance, m: the profiles of hole and pin, each at most :data:`MOST_GAP` R, as a
         :class:`fastpin.model.InitialGap`. All else that stands for a profile is the profile of the hole.
@@ -197,9 +192,10 @@ class Problem:
             check_fields(self, checked_thickness, "thickness")
             if self.dimensionless:
                 raise InputError("thickness", NO_THICKNESS)
-        check_fields(self, checked_system, "unit_system")
-        if self.dimensionless and self.unit_system != SI:
-            raise InputError("unit_system", NO_UNITS)
+        if self.unit_system != SI:
+            check_fields(self, checked_system, "unit_system")
+            if self.dimensionless:
+                raise InputError("unit_system", NO_UNITS)
         set_fields(self, clearance=clearance, friction=friction, dimensionless=bool(self.dimensionless))
         set_fields(self, gap=checked_gap(self.gap, radius, self.dimensionless))
         pin, *seats = self.interfaces  # each contact of the joint is checked as a problem of its own

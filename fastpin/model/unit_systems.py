@@ -16,6 +16,9 @@ from fastpin.model.synonyms import closest
 SI = "SI"
 """The usual system: SI units, with a prefix that suits the size of a value."""
 
+NO_UNITS = "has no meaning in a dimensionless problem, whose numbers have no units"
+"""Why a dimensionless problem refuses a system of units."""
+
 POUND, INCH = 4.4482216152605, 0.0254
 """A pound of force, N, and an inch, m. Both are exact."""
 

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fastpin.model.growth import Walker
-from fastpin.model.keys import Kinds, converted
+from fastpin.model.keys import KeyKinds, converted
 from fastpin.model.loads import LATER, LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
 from fastpin.model.unit_systems import SI, Measure, measures
@@ -160,7 +160,7 @@ def units(problem: Problem) -> dict[str, Unit]:
 def units_of(system: str, whole: bool) -> Mapping[str, Unit]:
     """The unit of every kind of quantity in a system of units, for values in SI units.
 
-    Kinds of :data:`PER_THICKNESS` count for the `whole` thickness, or per thickness.
+    KeyKinds of :data:`PER_THICKNESS` count for the `whole` thickness, or per thickness.
     """
     ways = measures_of(system, whole)
     return {kind: Unit(way.per_si, way.name, system != SI and bool(_KINDS[kind].system)) for kind, way in ways.items()}
@@ -194,7 +194,7 @@ def system_words(problem: Problem) -> str:
     return "SI units" if problem.unit_system == SI else f"units of {problem.unit_system}"
 
 
-def from_units(problem: Problem, value: Any, kinds: Kinds) -> Any:
+def from_units(problem: Problem, value: Any, kinds: KeyKinds) -> Any:
     """A value whose numbers are in the units of a problem, such as options of the command line, in SI units.
 
     `kinds` are those of its numbers. None of them is per thickness.
@@ -203,12 +203,12 @@ def from_units(problem: Problem, value: Any, kinds: Kinds) -> Any:
     return converted(value, kinds, lambda kind, number: ways[kind].in_si(number), unit)
 
 
-def in_units(problem: Problem, value: Any, kinds: Kinds) -> Any:
+def in_units(problem: Problem, value: Any, kinds: KeyKinds) -> Any:
     """See :func:`in_units_of`, with the units and the thickness of a problem."""
     return in_units_of(value, kinds, problem.unit_system, problem.thickness)
 
 
-def in_units_of(value: Any, kinds: Kinds, system: str, thickness: float | None) -> Any:
+def in_units_of(value: Any, kinds: KeyKinds, system: str, thickness: float | None) -> Any:
     """A value in SI units and per thickness, such as a table of a case file, as it stands in a file with units.
 
     Parameters
@@ -231,7 +231,7 @@ def in_units_of(value: Any, kinds: Kinds, system: str, thickness: float | None) 
     return converted(value, kinds, functools.cache(given), None if system == SI else Walker.unit)
 
 
-def in_other_units(tables: Mapping[str, Any], kinds: Kinds, old: str, new: str, whole: bool) -> dict[str, Any]:
+def in_other_units(tables: Mapping[str, Any], kinds: KeyKinds, old: str, new: str, whole: bool) -> dict[str, Any]:
     """Tables of a file in an `old` system of units as they stand in a `new` one; see :func:`measures_of`."""
     read, written = measures_of(old, whole), measures_of(new, whole)
     unit = Walker.unit if old == SI else 1.0

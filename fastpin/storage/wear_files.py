@@ -125,9 +125,7 @@ def wear(
     task = WearTask(problem, history, how, SolveOptions(**options), grid, progress, friction)
     warn_of([*doubts(problem, history, task.options), *wear_doubts(problem, how)], 2)
     title, judged = checks.string("title", title), checked_beside(problem, {"fatigue": fatigue})
-    if fatigue is not None and (fatigue.residual_stress, fatigue.reliability) != (None, None):
-        words = "must have neither residual_stress nor reliability: a life of wear takes median lives without them"
-        raise InputError("fatigue", words)
+    _check_median(fatigue)
     for name, value in (("overwrite", overwrite), ("resume", resume)):
         if checks.true_or_false(name, value) and output is None:
             raise InputError(name, "needs an output")
@@ -144,6 +142,13 @@ def wear(
     with closing_file(writer):
         task.follow(writer)
     return load_wear(path)
+
+
+def _check_median(fatigue: FatigueAssessment | None) -> None:
+    """Refuse a scatter of lives and a residual stress."""
+    if fatigue is not None and (fatigue.residual_stress, fatigue.reliability) != (None, None):
+        words = "must have neither residual_stress nor reliability: a life of wear takes median lives without them"
+        raise InputError("fatigue", words)
 
 
 def _in_memory(task: WearTask) -> WearResult:

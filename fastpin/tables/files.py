@@ -85,7 +85,7 @@ def read_corners(
         Wanted(
             find=(lambda titles: chosen_columns(titles, chosen)) if chosen else named_columns,
             places=known_places(chosen) if chosen else None,
-            unit=lambda name, unit: _load_unit(name, unit, basis),
+            unit=lambda name, unit: load_unit(name, unit, basis) if unit else basis.plain(LOAD_KIND.get(name, "")),
             noun="load corners",
             most=most,
             too_many=f"more than {most:,} corners can't be read; repeat a shorter file in a case file",
@@ -108,13 +108,6 @@ def read_corners(
         return [(corners, 0)]
     counts = numbers[names.index(COUNT)].astype(int).tolist()
     return list(zip(np.split(corners, rows), counts, strict=True))
-
-
-def _load_unit(name: str, unit: str, basis: Basis) -> LoadUnit:
-    """Return the way of a load to SI units; a count has no unit, and an empty unit is that of the basis."""
-    if name == COUNT:
-        return LoadUnit()
-    return load_unit(name, unit, basis) if unit else basis.plain(LOAD_KIND[name])
 
 
 def read_samples(

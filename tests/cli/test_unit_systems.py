@@ -17,7 +17,7 @@ from fastpin.model.unit_systems import SI
 from fastpin.model.units import measures_of
 from tests.support.tiers import some_survey
 from tests.support.unit_cases import CASES
-from tests.support.unit_walk import MOST_ROWS, PARTS, UNIT, Walk, case_in, leaves, line_in, walk, words
+from tests.support.unit_walk import MOST_ROWS, PARTS, UNIT, Walk, cases_in, leaves, line_in, walk, words
 
 SYSTEMS = ("in, lbf, ksi", "mm, N, MPa")
 
@@ -44,7 +44,8 @@ def pair(folder: Path, system: str, case: str, plan: str = "", thick: bool = Tru
     force = measures_of(system, thick)["force"]
     given = re.sub(r"(?<=load\.1\.P = \[)([\d.e]+), ([\d.e]+)", lambda each: ", ".join(
         repr(force.given(float(number))) for number in each.groups()), plan)  # fmt: skip
-    return Walk(folder / "si", case, plan), Walk(folder / "system", case_in(case, system), given, system)
+    plain, changed = cases_in(case, system)
+    return Walk(folder / "si", plain, plan), Walk(folder / "system", changed, given, system)
 
 
 def run_both(walks: tuple[Walk, Walk], lines: list[str]) -> None:
@@ -154,14 +155,18 @@ NUMBER_WITH_UNIT = re.compile(
 
 
 def check_text(text: str, other: str, by_name: dict[tuple[str, str], float]) -> None:
-    """Check the numbers of sentences that have a unit behind them."""
-    ends = {old: (new, factor) for (old, new), factor in by_name.items()}
-    pairs = zip(NUMBER_WITH_UNIT.finditer(text), NUMBER_WITH_UNIT.finditer(other), strict=False)
-    for one, two in pairs:
-        stem = next((name for name in (one[2], one[2][1:]) if name in ends), "")
-        if not stem or stem == one[2] == two[2]:
-            continue
+    """Check the numbers that have a unit behind them. Where both texts have as many, they belong together."""
+    ends = {old: (new, factor) for (old, new), factor in by_name.items() if old}
+    news = {new for new, _ in ends.values()}
+    pairs = [(one, stem) for one in NUMBER_WITH_UNIT.finditer(text) if (stem := stem_of(one[2], ends))]
+    others = [two for two in NUMBER_WITH_UNIT.finditer(other) if two[2] in news]
+    for (one, stem), two in zip(pairs, others, strict=False) if len(pairs) == len(others) else ():
         power = {"G": 9, "M": 6, "k": 3, "m": -3, "u": -6, "µ": -6, "n": -9, "p": -12}.get(one[2].removesuffix(stem), 0)
         value, changed = (float(each[1].replace(",", "")) for each in (one, two))
         if two[2] == ends[stem][0]:
             assert is_close(value * 10.0**power, changed, ends[stem][1], 2e-2), (one[0], two[0])
+
+
+def stem_of(unit: str, known: dict[str, tuple[str, float]]) -> str:
+    """A unit without its prefix; empty if it is unknown."""
+    return next((name for name in (unit, unit[1:]) if name in known), "")

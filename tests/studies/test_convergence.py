@@ -264,7 +264,8 @@ def test_outcomes_of_the_history_and_of_its_last_cycle(problem: Problem) -> None
         places = [state.peak_pressure_angle for state in result][-3:]
         assert walk == pytest.approx(max(places) - min(places))
     reported = {row.name: row for row in reported_series(study.studies[0], problem, 9)}
-    assert (reported["walk"].unit, reported["place"].unit, reported["loss"].unit) == ("deg", "deg", "F^2 beta*")
+    units = [reported[name].unit.name for name in ("walk", "place", "loss")]
+    assert units == ["deg", "deg", "F^2 beta*"]
     assert reported["walk"].values[-1] == pytest.approx(math.degrees(series(study, "walk", 9).values[-1]))
     assert reported["place"].values[-1] == pytest.approx(math.degrees(series(study, "place", 9).values[-1]) + 90.0)
     without = converge(problem, REPEATED, GRIDS)

@@ -20,8 +20,8 @@ friction = 0.3
 
 TAIL = """
 [solve]
-nodes = 41
-between = 2
+nodes = 31
+between = 1
 """
 
 FORCES = """
@@ -73,7 +73,6 @@ friction = 0.2
 THICK = "thickness = 5e-3"
 
 SHORT = ["run case.toml -o a.h5 --json run.json --cycle-csv run.csv", "show a.h5 --json show.json", "check case.toml"]
-SHOWN = [*SHORT, "report a.h5 -o report.html"]
 
 
 def text(*parts: str, plate: str = "", contact: str = THICK) -> str:
@@ -132,16 +131,16 @@ WEAR = "[wear]\ncycles = 3\npin = 2e-14\nplate = { constant = 1e-14 }\n"
 
 CASES = {
     "infinite plate": (text(N_PER_M, contact=""), SHORT),
-    "yield": (text(FORCES % (4e4, 1e4, 4e4)), SHOWN),
+    "yield": (text(FORCES % (4e4, 1e4, 4e4)), SHORT),
     "hollow pin in a ring": (text(RING, N, contact=f'{THICK}\nplane = "stress"'), SHORT),
-    "bush that slips": (text(BUSH, N), SHORT),
+    "bush that slips": (text(BUSH, N), ["run case.toml --json run.json --cycle-csv run.csv"]),
     "held pin with a spring": (text(N, contact=HELD), SHORT),
     "prescribed displacement of a rig": (text(MOVED, contact=DRIVEN), SHORT),
     "gap and remote stress": (text(GAP, contact=""), SHORT),
     "fatigue at a critical distance": (text(N, POINT, plate=FATIGUE), SHORT),
-    "curve with scatter and residual stress": (text(N, RELIABLE, plate=CURVE), SHOWN),
+    "curve with scatter and residual stress": (text(N, RELIABLE, plate=CURVE), SHORT),
     "crack": (text(N, CRACK), SHORT),
-    "laminate": (f"{LAMINATE}thickness = 2e-3\n{STRENGTH}{TAIL}", SHOWN),
+    "laminate": (f"{LAMINATE}thickness = 2e-3\n{STRENGTH}{TAIL}", SHORT),
     "wear": (
         text(N, WEAR),
         ["wear case.toml -o life.h5 --json wear.json", "show life.h5"],

@@ -18,6 +18,7 @@ from fastpin import figures
 from fastpin.cli.main import main
 from fastpin.figures.kinds import KINDS
 from fastpin.model.keys import CASE as KINDS_OF_KEYS
+from fastpin.model.keys import converted
 from fastpin.model.unit_systems import SI
 from fastpin.model.units import in_other_units, measures_of
 from fastpin.studies import workers
@@ -179,10 +180,16 @@ def walk(found: Walk, lines: list[str], monkeypatch: pytest.MonkeyPatch) -> None
         found.commands[line] = "\n".join([said.getvalue(), *drawn])
 
 
-def case_in(text: str, system: str) -> str:
-    """A case file in SI units, written in a system of units."""
+def cases_in(text: str, system: str) -> tuple[str, str]:
+    """A case file in SI units as one in a system of units, with six digits, and this one in SI units again.
+
+    Both are read as the same numbers, to the last bit.
+    """
     tables = tomllib.loads(text)
-    return toml(in_other_units(tables, KINDS_OF_KEYS, SI, system, "thickness" in tables["contact"]))
+    whole = "thickness" in tables["contact"]
+    changed = in_other_units(tables, KINDS_OF_KEYS, SI, system, whole)
+    changed = converted(changed, KINDS_OF_KEYS, lambda kind, number: float(f"{number:.6g}"))
+    return toml(in_other_units(changed, KINDS_OF_KEYS, system, SI, whole)), toml(changed)
 
 
 def line_in(line: str, system: str) -> str:

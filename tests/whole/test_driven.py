@@ -363,7 +363,7 @@ def case(tmp_path):
 @pytest.mark.gate
 def test_case_file_and_tables(case):
     assert (case.problem.drive, case.problem.gauge_radius, case.problem.hub_radius) == ("ux", 15e-3, 4e-3)
-    assert "ux in place of Q over radius 0.015 m, hub of radius 0.004 m" in describe(case)
+    assert "ux in place of Q over radius 15 mm, hub of radius 4 mm" in describe(case)
     assert "driven by ux over radius 0.015" in repr(case.problem)
     result = solve(case.problem, case.history, **case.options.keywords())
     head = state_table(case.problem, result).splitlines()[0]
