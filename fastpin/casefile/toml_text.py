@@ -7,15 +7,17 @@ lines of all keys itself, and parses again without a faulty line.
 from __future__ import annotations
 
 import contextlib
+import gc
 import re
 import tomllib
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-from fastpin.casefile.toml_lines import HEADER, KEY_LINE, STRING_OR_COMMENT, KeyPath, Lines, uncollected
+from fastpin.casefile.toml_faults import HEADER, KEY, KEY_LINE, STRING_OR_COMMENT, syntax_message
 from fastpin.errors import CaseFileError, InputError, printable
-from fastpin.model.checks import as_toml, choice, instance, number, shortened, why_unreadable
+from fastpin.model.checks import as_toml, choice, instance, number, why_unreadable
 from fastpin.model.inputs import HDF5_SIGNATURE, open_input
 from fastpin.model.keys import converted
 from fastpin.model.synonyms import closest, meant
@@ -54,6 +56,9 @@ KINDS = {
     "joint file": (("joint",), "joint"),
 }
 """The sections that only one kind of file has, and the command for such a file."""
+
+KeyPath = tuple[str | int, ...]
+"""The keys and indices that lead to a value: ("load", 0, "P")."""
 
 T = TypeVar("T")
 
@@ -152,11 +157,11 @@ class CaseText:
         most_points = max(line.count(".") for line in lines)  # a key stands on one line
         if most_points >= MOST_PARTS and _LONG_KEY.search(STRING_OR_COMMENT.sub('""', text)):
             self.readable = False
-            self._lines = Lines([])
+            self._lines = _Lines([])
             self._add(0, f"a key has more than {MOST_PARTS} parts, joined by points")
             self.root = Section(self, (), {})
             return
-        self._lines = Lines(lines.copy())
+        self._lines = _Lines(lines.copy())
         self.root = Section(self, (), self._parse(lines))
 
     def _parse(self, lines: list[str]) -> dict[str, Any]:
@@ -165,7 +170,7 @@ class CaseText:
         size = sum(map(len, lines)) + len(lines)
         while True:
             try:
-                with uncollected():
+                with _uncollected():
                     tables = tomllib.loads("\n".join(lines))
                 break
             except RecursionError:
@@ -173,7 +178,7 @@ class CaseText:
                 self.readable = False
                 return {}
             except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
-                message, line = _syntax_message(str(error), lines)
+                message, line = syntax_message(str(error), lines)
                 _, keys, starts = self._lines.located
                 start = starts.get(line, line)
                 if line != start:
@@ -447,6 +452,85 @@ def written(name: str, value: object) -> str:
 _LONG_KEY = re.compile(rf"""(?<![\w"'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
 
 
+@contextlib.contextmanager
+def _uncollected() -> Iterator[None]:
+    """Let Python look for no unreachable objects: a parser makes many tables and no such objects.
+
+    The search takes two fifths of the time of a text of 2 MB.
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+class _Lines:
+    """The lines of a text. Places in them are looked up for a fault only."""
+
+    def __init__(self, lines: list[str]) -> None:
+        self._all = lines
+
+    @cached_property
+    def located(self) -> tuple[dict[KeyPath, int], dict[int, KeyPath], dict[int, int]]:
+        """The lines of all headers and keys, see :func:`_locate`."""
+        with _uncollected():
+            return _locate(self._all)
+
+
+def _locate(lines: list[str]) -> tuple[dict[KeyPath, int], dict[int, KeyPath], dict[int, int]]:
+    """The lines of all headers and keys.
+
+    Returns
+    -------
+    places : dict
+        Line of every header and key. Of several the first line counts.
+    keys : dict
+        Place of the key that begins on a line.
+    starts : dict
+        For every line after the first of a value of several lines: the line on which the value begins.
+    """
+    places: dict[KeyPath, int] = {}
+    keys: dict[int, KeyPath] = {}
+    starts: dict[int, int] = {}
+    counts: dict[str, int] = {}
+    section: KeyPath = ()
+    begin, depth = 0, 0
+    for line_number, (line, change) in enumerate(zip(lines, _nesting(lines), strict=True), start=1):
+        header = HEADER.match(line)
+        key = None if header else KEY_LINE.match(line)
+        if depth > 0:
+            starts[line_number] = begin
+            depth = max(depth + change, 0)
+        elif header:
+            section = _parts(header[2])
+            if header[1] == "[[":
+                counts[header[2]] = counts.get(header[2], -1) + 1
+                places.setdefault(section, line_number)
+                section = (*section, counts[header[2]])
+            places.setdefault(section, line_number)
+        elif key:
+            begin, depth = line_number, max(change, 0)
+            keys[line_number] = (*section, *_parts(key[1]))
+            places.setdefault(keys[line_number], line_number)
+    return places, keys, starts
+
+
+def _parts(dotted: str) -> KeyPath:
+    if '"' not in dotted and "'" not in dotted:
+        return tuple(map(str.strip, dotted.split(".")))
+    return tuple(part[0].strip("\"'") for part in re.finditer(KEY, dotted))
+
+
+def _nesting(lines: list[str]) -> list[int]:
+    """Number of opening minus closing brackets of each line, without the brackets in strings and comments."""
+    # A string becomes a pair of brackets around its line ends, so that it counts as nested. A comment becomes "[]".
+    bare = STRING_OR_COMMENT.sub(lambda found: "[" + "\n" * found[0].count("\n") + "]", "\n".join(lines))
+    return [len(re.findall(r"[\[{]", line)) - len(re.findall(r"[\]}]", line)) for line in bare.split("\n")]
+
+
 def _mark_faulty(tables: dict[str, Any], place: KeyPath) -> None:
     """Put the mark of a faulty value at its place in the tables, so that its key does not count as missing."""
     table: Any = tables
@@ -459,53 +543,6 @@ def _mark_faulty(tables: dict[str, Any], place: KeyPath) -> None:
             return
     if isinstance(table, dict):
         table[place[-1]] = _FAULTY
-
-
-def _syntax_message(message: str, lines: list[str]) -> tuple[str, int]:
-    """A sentence and a line for a message of the TOML parser."""
-    last = max((number for number, line in enumerate(lines, start=1) if line.strip()), default=1)
-    found = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)$", message)
-    if not found:
-        digits = next((n for n, line in enumerate(lines, start=1) if re.search(r"\d{4300}", line)), last)
-        return "a number of thousands of digits can't be read", digits
-    line = int(found[1]) if found[1] else last
-    reason = message[: found.start()]
-    if twice := re.match(r"Cannot declare \((.*?),?\) twice", reason):
-        name = twice[1].replace("'", "").replace(", ", ".")
-        return f"the section [{shortened(name)}] appears twice{_block_hint(name)}", line
-    key = KEY_LINE.match(lines[line - 1])
-    if reason.startswith("Cannot overwrite"):
-        header = HEADER.match(lines[line - 1])
-        name = header[2] if header else key[1] if key else ""
-        return f'"{shortened(name)}" is given twice{_block_hint(name)}', line
-    value = shortened(key[2].split("#")[0]) if key else ""
-    label = shortened(key[1]) if key else ""
-    if key and reason.startswith("Expected newline"):
-        return f"{label}: {_behind_value(value)}", line
-    if key and reason.startswith("Invalid value"):
-        if not value:
-            return f"{label}: its value is missing", line
-        if re.fullmatch(r"[A-Za-z][A-Za-z0-9 .-]*", value):
-            return f'{label}: text must stand in quotes, "{value}"', line
-        if re.fullmatch(r"[+-]?\.\d.*", value):
-            return f"{label}: a number needs a digit before its point, {value.replace('.', '0.', 1)}", line
-        return f'{label}: must be a number, true, false, a [list] or "text in quotes"', line
-    if reason.startswith("Expected '='"):
-        return 'not of the form "key = value"', line
-    return f"not TOML: {reason[0].lower()}{reason[1:]}", line
-
-
-def _behind_value(value: str) -> str:
-    """A sentence on a value with something behind it."""
-    if re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", value):
-        return f"a number has a decimal point, {value.replace(',', '.')}"
-    if re.fullmatch(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-z%/^0-9]+", value):
-        return f"must be a number without a unit, not {value}; SI units are meant, or those of the key units"
-    return f"must be one value, not {value}"
-
-
-def _block_hint(name: str) -> str:
-    return "; several loads are [[load]] blocks, with double brackets" if name == "load" else ""
 
 
 class NamedTable(Section):

@@ -23,10 +23,10 @@ import numpy as np
 from fastpin.assess.questions import QUESTIONS
 from fastpin.casefile.profiles import PROFILES, part_fault
 from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
-from fastpin.casefile.toml_lines import KeyPath
 from fastpin.casefile.toml_text import (
     MOST_BYTES_OF_PLAN,
     CaseText,
+    KeyPath,
     NamedTable,
     Section,
     parse_text,

@@ -22,8 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fastpin.assess.outputs import ROUNDING
-from fastpin.casefile.toml_lines import KeyPath
-from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, parse_text, read_text
+from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.model import Case, Problem, points
 from fastpin.model.checks import as_toml, check_callable, file_path, string, true_or_false, whole_number
