@@ -281,9 +281,11 @@ class CaseText:
         if self.units == SI:
             return ""
         given, used = _value_at(self._given, place), _value_at(self.root.table, place)
-        if isinstance(used, (int, float)) and (f"{used:g}" in message or as_toml(used) in message):
-            return "" if used == given else f"; in SI units: the file has {as_toml(given)}, in {self.units}"
-        return "; in SI units" if isinstance(used, (list, dict)) and used != given and "must" in message else ""
+        numbers = [each for each in (used if isinstance(used, list) else [used]) if isinstance(each, float)]
+        if used == given or not any(f"{each:g}" in message or as_toml(each) in message for each in numbers):
+            return ""
+        told = "" if isinstance(used, list) else f": the file has {as_toml(given)}"
+        return f'; in SI units{told}, with units = "{self.units}"'
 
     def section(self, name: str, required: bool = False) -> Section:
         """The section [name], or an empty section if it is missing or not a table.

@@ -144,7 +144,8 @@ def test_a_case_survives_its_file_in_any_units(system, thickness):
 def test_a_message_about_a_converted_number_shows_the_number_of_the_file():
     found = fault(TEXT.replace("clearance = 0.02", "clearance = 500.0") + LOAD)
     assert "line 10: clearance: must lie between minus and plus the hole radius 0.01, not 0.5" in found
-    assert found.endswith("; in SI units: the file has 500.0, in mm, N, MPa")
+    assert found.endswith('; in SI units: the file has 500.0, with units = "mm, N, MPa"')
+    assert fault(TEXT + LOAD.replace("5.0", '[5.0, "x"]')).endswith('value 2 of P: must be a number, not "x"')
 
 
 def test_a_column_without_a_unit_is_in_the_units_of_the_case(tmp_path):
