@@ -19,10 +19,9 @@ from fastpin.casefile.toml_faults import HEADER, KEY, KEY_LINE, STRING_OR_COMMEN
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import as_toml, choice, instance, number, why_unreadable
 from fastpin.model.inputs import HDF5_SIGNATURE, open_input
-from fastpin.model.keys import converted
 from fastpin.model.synonyms import closest, meant
 from fastpin.model.unit_systems import SI, checked_system, is_system
-from fastpin.model.units import measures_of
+from fastpin.model.units import from_units_of
 
 MOST_BYTES = 4_000_000
 """Most bytes of a case file, a lug file, or a file of materials or outcomes. Python parses some 1 MB in a second.
@@ -272,9 +271,8 @@ class CaseText:
         given = self.root.checked("units", checked_system) or SI
         self.units = system if isinstance(system, str) and is_system(system) else given
         if self.units != SI:
-            self._given, ways = self.root.table, measures_of(self.units, whole)
-            tables = converted(self._given, kinds, lambda kind, number: ways[kind].in_si(number), unit=1.0)
-            self.root = Section(self, (), tables)
+            self._given = self.root.table
+            self.root = Section(self, (), from_units_of(self._given, kinds, self.units, whole))
 
     def _in_other_units(self, place: KeyPath, message: str) -> str:
         """The end of a message that has numbers in SI units, while the text has them in other units."""

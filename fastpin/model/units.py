@@ -2,8 +2,8 @@
 
 Everything that is printed, drawn or written as text takes its units from :func:`units`. With a thickness these are N,
 N m, J and N m/rad, and a factor goes with each. A problem may have a system of units of its own, see
-:func:`checked_system`. :func:`units_per_thickness` names the units of numbers in Python, HDF5 files and indexes of
-sweeps, which are always SI. Outputs do not import it, see ``tests/project/test_layout.py``.
+:mod:`fastpin.model.unit_systems`. Numbers in Python, HDF5 files and indexes of sweeps are always in SI units, which
+:func:`units_per_thickness` names. Outputs do not import it, see ``tests/project/test_layout.py``.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -143,16 +143,11 @@ DEGREE = Unit(1.0, "deg")
 
 def units(problem: Problem) -> dict[str, Unit]:
     """The unit of every kind of quantity in printed texts: with the thickness of the problem, if it has one."""
-    if problem.unit_system != SI:
-        factor = 1.0 if problem.thickness is None else problem.thickness
-        of_system = units_of(problem.unit_system, problem.thickness is not None)
-        return {
-            kind: Unit(unit.factor * (factor if kind in PER_THICKNESS else 1.0), unit.name, unit.is_chosen)
-            for kind, unit in of_system.items()
-        }
-    found = {kind: Unit(1.0, name) for kind, name in units_per_thickness(problem).items()}
-    if problem.thickness is not None:
-        found |= {kind: Unit(problem.thickness, name) for kind, name in PER_THICKNESS.items()}
+    if problem.dimensionless:
+        return {kind: Unit(1.0, name) for kind, name in units_per_thickness(problem).items()}
+    thickness, found = problem.thickness, dict(units_of(problem.unit_system, problem.thickness is not None))
+    if thickness is not None:
+        found |= {kind: replace(found[kind], factor=thickness * found[kind].factor) for kind in PER_THICKNESS}
     return found
 
 
@@ -160,7 +155,7 @@ def units(problem: Problem) -> dict[str, Unit]:
 def units_of(system: str, whole: bool) -> Mapping[str, Unit]:
     """The unit of every kind of quantity in a system of units, for values in SI units.
 
-    KeyKinds of :data:`PER_THICKNESS` count for the `whole` thickness, or per thickness.
+    Kinds of :data:`PER_THICKNESS` count for the `whole` thickness, or per thickness.
     """
     ways = measures_of(system, whole)
     return {kind: Unit(way.per_si, way.name, system != SI and bool(_KINDS[kind].system)) for kind, way in ways.items()}
@@ -199,7 +194,12 @@ def from_units(problem: Problem, value: Any, kinds: KeyKinds) -> Any:
 
     `kinds` are those of its numbers. None of them is per thickness.
     """
-    ways, unit = measures_of(problem.unit_system, False), None if problem.unit_system == SI else 1.0
+    return from_units_of(value, kinds, problem.unit_system, False)
+
+
+def from_units_of(value: Any, kinds: KeyKinds, system: str, whole: bool) -> Any:
+    """A value whose numbers are in a system of units, in SI units; see :func:`measures_of`."""
+    ways, unit = measures_of(system, whole), None if system == SI else 1.0
     return converted(value, kinds, lambda kind, number: ways[kind].in_si(number), unit)
 
 

@@ -27,7 +27,7 @@ from fastpin.tables.columns import (
     named_columns,
     title_and_unit,
 )
-from fastpin.tables.load_units import PER_METRE, Basis, LoadUnit, load_unit
+from fastpin.tables.load_units import IN_SI, Basis, LoadUnit, load_unit
 from fastpin.tables.reader import Wanted, read_table
 
 MAX_ROWS = 10_000_000
@@ -44,7 +44,7 @@ MOST_SAMPLES = 20_001
 
 
 def history_from_csv(
-    path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = PER_METRE, skip: int = 0
+    path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = IN_SI, skip: int = 0
 ) -> LoadHistory:
     """Read a history as :meth:`fastpin.LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
     return LoadHistory.of_blocks(
@@ -113,7 +113,7 @@ def read_corners(
 def read_samples(
     path: str | Path,
     quantity: ProfileKind = "gap",
-    basis: Basis = PER_METRE,
+    basis: Basis = IN_SI,
     columns: Mapping[str, Any] | None = None,
     skip: int = 0,
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -46,7 +46,7 @@ class Basis(NamedTuple):
         return LoadUnit(way.power, way.factor)
 
 
-PER_METRE = Basis()
+IN_SI = Basis()
 """Loads per metre of thickness in SI units."""
 
 _UNITS = {

@@ -292,9 +292,9 @@ class Sizes:
     Attributes
     ----------
     force : float
-        Largest force or moment. A work is what is left of the products of forces and motion.
+        Largest force or moment. Work is a small difference of large products of force and motion.
     interference : float
-        The motion of a pressed pin is what is left of it.
+        Interference of a pressed pin. Its motion is a small difference of such lengths.
     stiffness : float
         Traction for a displacement that changes its sign from node to node, over this displacement.
     unbalanced : float
