@@ -21,7 +21,7 @@ from fastpin.model.checks import as_toml, choice, instance, number, why_unreadab
 from fastpin.model.inputs import HDF5_SIGNATURE, open_input
 from fastpin.model.synonyms import closest, meant
 from fastpin.model.unit_systems import SI, checked_system, is_system
-from fastpin.model.units import from_units_of
+from fastpin.model.units import from_units
 
 MOST_BYTES = 4_000_000
 """Most bytes of a case file, a lug file, or a file of materials or outcomes. Python parses some 1 MB in a second.
@@ -272,7 +272,7 @@ class CaseText:
         self.units = system if isinstance(system, str) and is_system(system) else given
         if self.units != SI:
             self._given = self.root.table
-            self.root = Section(self, (), from_units_of(self._given, kinds, self.units, whole))
+            self.root = Section(self, (), from_units(self._given, kinds, self.units, whole))
 
     def _in_other_units(self, place: KeyPath, message: str) -> str:
         """The end of a message that has numbers in SI units, while the text has them in other units."""

@@ -58,6 +58,6 @@ def _how(options: argparse.Namespace, case: Case) -> CrackGrowth:
     law = {name: value for name in keys if (value := getattr(options, name, None)) is not None}
     if law:
         given["law"] = {"law": "walker"} | law
-    given = from_units(case.problem, {name: value for name, value in given.items() if value is not None}, CASE["crack"])
-    entries |= given
+    given = {name: value for name, value in given.items() if value is not None}
+    entries |= from_units(given, CASE["crack"], case.problem.unit_system)
     return crack_from(**entries)

@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
         stored = storage.stored_case(options.result)
         title = stored.title
         if options.depth is not None and options.kind != "profile":  # which takes radii
-            options.depth = from_units(stored.problem, options.depth, "length")
+            options.depth = from_units(options.depth, "length", stored.problem.unit_system)
     if options.interface == "seat":
         title = seat_title(title)
     check_outputs({"--output": figure, "--csv": options.csv}, figures=("--output",))

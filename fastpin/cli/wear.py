@@ -26,7 +26,7 @@ def run(options: argparse.Namespace) -> int:
     given = {name: getattr(options, name) for name in ("cycles", "coefficient", "law", "tolerance")}
     given["at"] = None if options.at is None else [literal(part) for part in options.at.split(",")]
     given = {name: value for name, value in given.items() if value is not None}
-    given = from_units(case.problem, given, CASE["wear"])
+    given = from_units(given, CASE["wear"], case.problem.unit_system)
     if "coefficient" in given:
         how |= {"pin": None, "plate": None}
     if "at" in how and isinstance(given.get("cycles"), (int, float)):

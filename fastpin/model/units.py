@@ -189,16 +189,8 @@ def system_words(problem: Problem) -> str:
     return "SI units" if problem.unit_system == SI else f"units of {problem.unit_system}"
 
 
-def from_units(problem: Problem, value: Any, kinds: KeyKinds) -> Any:
-    """A value whose numbers are in the units of a problem, such as options of the command line, in SI units.
-
-    `kinds` are those of its numbers. None of them is per thickness.
-    """
-    return from_units_of(value, kinds, problem.unit_system, False)
-
-
-def from_units_of(value: Any, kinds: KeyKinds, system: str, whole: bool) -> Any:
-    """A value whose numbers are in a system of units, in SI units; see :func:`measures_of`."""
+def from_units(value: Any, kinds: KeyKinds, system: str, whole: bool = False) -> Any:
+    """A value whose numbers are in a system of units, such as a file or an option, in SI units; see `measures_of`."""
     ways, unit = measures_of(system, whole), None if system == SI else 1.0
     return converted(value, kinds, lambda kind, number: ways[kind].in_si(number), unit)
 
