@@ -150,8 +150,8 @@ class BodyBase:
         The name of the class in files.
     keys : tuple of str
         The keys of its section in case files.
-    arrays, named_arrays : tuple of str
-        The fields that are arrays, and arrays by name.
+    arrays, named_arrays, texts : tuple of str
+        The fields that are arrays, arrays by name, and long texts.
     controlled : tuple of str
         The names of its controls on the live page. Those of a material are not among them.
     """
@@ -160,6 +160,7 @@ class BodyBase:
     keys: ClassVar[tuple[str, ...]] = ()
     arrays: ClassVar[tuple[str, ...]] = ()
     named_arrays: ClassVar[tuple[str, ...]] = ()
+    texts: ClassVar[tuple[str, ...]] = ()
     controlled: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
@@ -172,9 +173,10 @@ class BodyBase:
         return given_fields(self)
 
     def entries(self) -> dict[str, Any]:
-        """The kind, and the fields by name, as HDF5 files hold them. A body inside has entries of its own."""
+        """The kind, and the fields by name, as HDF5 files hold them: texts in bytes. A body inside has its own."""
         values = {each.name: getattr(self, each.name) for each in fields(self)}
         inner = {name: value.entries() if isinstance(value, BodyBase) else value for name, value in values.items()}
+        inner |= {name: values[name].encode() or None for name in self.texts}
         return {"kind": self.kind, **inner}
 
     @classmethod
@@ -316,9 +318,28 @@ class PlateBody(BodyBase):
         return HELD if self.support == "held" else FREE
 
     @property
+    def has_inside(self) -> bool:
+        """Whether the stress is known in the whole body."""
+        return True
+
+    @property
     def reach(self) -> float:
-        """Largest radius at which the stress is known, in radii of its own hole."""
+        """Largest radius at which the stress is known all round, in radii of its own hole."""
         return math.inf
+
+    def contains(self, z: np.ndarray) -> np.ndarray:
+        """Whether the stress is known at points outside the hole, complex (m,), in radii of its own hole."""
+        return np.ones(z.shape, dtype=bool)
+
+    @property
+    def rims(self) -> tuple[np.ndarray, list[str]]:
+        """Points on the edges of a plate of any outline, in radii of its own hole, and the names of these edges."""
+        return np.zeros(0, dtype=complex), []
+
+    @property
+    def looked_at(self) -> str:
+        """Where alone a largest stress is looked for, in words; empty if that is everywhere."""
+        return ""
 
     @property
     def lug(self) -> PlateBody:

@@ -18,10 +18,10 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -48,6 +48,9 @@ from fastpin.model.inputs import open_input
 from fastpin.model.loads import LOADS, REMOTE, TEMPERATURE, P, Q
 from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
 
+if TYPE_CHECKING:  # few plates need it
+    from fastpin.lugs import PlateField
+
 FORMAT = "fastpin compliance"
 """Name of the file format, its first entry."""
 
@@ -68,6 +71,9 @@ MOST_ENTRY = 1e9
 
 MOST_BYTES = 10_000_000
 """Most bytes of a file."""
+
+MOST_OUTLINE = 1_000_000
+"""Most characters of an outline."""
 
 FARTHEST = 100.0
 """Radius of the nearest other edge that is looked for, at most, in radii of the hole."""
@@ -95,6 +101,9 @@ class Compliance(PlateBody):
         "temperature" is v/R per unit of the free thermal strain, beyond free expansion: what the supports hinder.
     made_by : str
         Origin of the numbers.
+    outline : str
+        Outline, further holes, supports and loads as a JSON text of :meth:`fastpin.lugs.Lug.document`. With it the
+        stress is known in the whole plate, without it near the hole only.
 
     Raises
     ------
@@ -104,7 +113,7 @@ class Compliance(PlateBody):
 
     kind = "compliance"
     keys = ("file",)
-    arrays, named_arrays = ("matrix",), ("columns",)
+    arrays, named_arrays, texts = ("matrix",), ("columns",), ("outline",)
     edge_only = True
     outer_radius = math.inf
 
@@ -114,12 +123,15 @@ class Compliance(PlateBody):
     matrix: np.ndarray
     columns: Mapping[str, np.ndarray] = field(default_factory=dict)
     made_by: str = ""
+    outline: str = ""
 
     def __post_init__(self) -> None:
         check_fields(self, number, "nu", 0.0, 0.5)
         check_fields(self, choice, "plane", PLANES)
         check_fields(self, positive, "hole_radius")
-        check_fields(self, string, "made_by")
+        check_fields(self, string, "made_by outline")
+        if self.outline:
+            _check_json(self.outline)
         matrix = numbers("matrix", self.matrix, -MOST_ENTRY, MOST_ENTRY).copy()
         size = matrix.shape[0] if matrix.ndim == 2 else 0
         if matrix.shape != (size, size) or size % 4 != 2 or not LEAST_ORDER <= (size - 2) // 4 <= MOST_ORDER:
@@ -151,7 +163,7 @@ class Compliance(PlateBody):
 
     def __reduce__(self) -> tuple[type[Compliance], tuple[Any, ...]]:
         """Copies and pickles are made anew, so that they can't be changed either."""
-        given = self.nu, self.plane, self.hole_radius, self.matrix, dict(self.columns), self.made_by
+        given = self.nu, self.plane, self.hole_radius, self.matrix, dict(self.columns), self.made_by, self.outline
         return type(self), given
 
     def __repr__(self) -> str:
@@ -227,6 +239,8 @@ class Compliance(PlateBody):
             raise InputError(missing[0], "is missing")
         known = ("nu", "plane", "hole_radius", "matrix", "columns", "made_by")
         given = {name: content[name] for name in known if name in content}
+        if isinstance(content.get("lug"), Mapping):
+            given["outline"] = json.dumps(content["lug"])
         if isinstance(given.get("made_by"), str):
             given["made_by"] = printable(given["made_by"])  # the file may be anybody's, or of an earlier version
         made = cls(**given)
@@ -240,7 +254,8 @@ class Compliance(PlateBody):
         columns = {name: column.tolist() for name, column in self.columns.items()}
         head = {"format": FORMAT, "version": VERSION, "nu": self.nu, "plane": self.plane}
         sizes = {"hole_radius": self.hole_radius, "order": self.order, "matrix": self.matrix.tolist()}
-        return {**head, **sizes, "columns": columns, "made_by": self.made_by}
+        lug = {"lug": json.loads(self.outline)} if self.outline else {}
+        return {**head, **sizes, "columns": columns, **lug, "made_by": self.made_by}
 
     def to_text(self) -> str:
         """Return the text of a file."""
@@ -370,9 +385,37 @@ class Compliance(PlateBody):
         x, y = unit * (translation_rows(len(self.matrix)) @ displacement)
         return moved + complex(x, y)
 
+    @property
+    def has_inside(self) -> bool:
+        return bool(self.outline)
+
     @cached_property
     def reach(self) -> float:
-        """Largest radius at which the stress is known, in radii of the hole.
+        return self._inside.nearest if self.outline else self._near
+
+    def contains(self, z: np.ndarray) -> np.ndarray:
+        near = np.abs(z) <= self._near * (1.0 + 1e-14)
+        if self.outline and not near.all():
+            near[~near] = self._inside.contains(z[~near])
+        return near
+
+    @property
+    def rims(self) -> tuple[np.ndarray, list[str]]:
+        return self._inside.rims if self.outline else super().rims
+
+    @property
+    def looked_at(self) -> str:
+        return self._inside.apart if self.outline else "near the hole only"
+
+    @property
+    def _inside(self) -> PlateField:
+        from fastpin import lugs
+
+        return lugs.plate_field(self)
+
+    @cached_property
+    def _near(self) -> float:
+        """Largest radius at which the harmonics give the stress, in radii of the hole.
 
         Entries of the matrix fall like d^-2n with the harmonic n, where d is the radius of the nearest other edge.
         """
@@ -386,8 +429,9 @@ class Compliance(PlateBody):
         return 1.0 + NEAREST_PART * (min(nearest, FARTHEST) - 1.0)
 
     def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
-        """The smooth field near the hole, which leaves the hole free of traction; (T48)."""
-        moved = self._edge_displacement(rim, tractions, remote)
+        """The smooth field, which leaves the hole free of traction; (T48) near the hole, and (T60) beyond."""
+        column = self._column(rim, tractions, remote)
+        moved = self._moved_by(column)
         moved[np.abs(moved) < 1e-10 * np.abs(moved).max()] = 0.0  # their noise grows like r^n
         order = np.arange(self.order + 1.0)
         amplitudes = 2.0 / (rim.kolosov + 1.0) * (np.arange(-self.order, self.order + 1.0) + 1.0) * moved
@@ -395,25 +439,42 @@ class Compliance(PlateBody):
         growing = np.array([a, order * a, (1.0 - order) * a + np.conj(b)])
         decaying = np.array([b, -order * b, (1.0 + order) * b + np.conj(a)])
         decaying[:, 0] = 0.0  # the constant belongs to the growing ones
-        far = self.reach
-        return PlateWalls(Wall(growing * far**order / [[1.0], [1.0], [far * far]], decaying, 1.0, far), None)
+        far = self._near
+        near = Wall(growing * far**order / [[1.0], [1.0], [far * far]], decaying, 1.0, far)
+        if not self.outline:
+            return PlateWalls(near, None)
+        growing[:2], growing[2, 2:] = 0.0, 0.0  # what is left has negative powers of z
+        return PlateWalls(near, None, Wall(growing, decaying, 1.0, 1.0, (partial(self._inside.smooth, column),)))
 
     def add_edge_hoop(self, hoop: np.ndarray, rim: Rim, tractions: Harmonics, remote: Remote, at: np.ndarray) -> None:
         """Add the hoop stress on the edge beyond the infinite plate at the angles `at`, shape (m,); (T48)."""
         order = np.arange(-self.order, self.order + 1.0)
         waves = np.exp(1j * np.multiply.outer(at, order))
-        moved = self._edge_displacement(rim, tractions, remote)
+        moved = self._moved_by(self._column(rim, tractions, remote))
         hoop += 8.0 / (rim.kolosov + 1.0) * np.real(waves @ ((1.0 + order) * moved))
 
-    def _edge_displacement(self, rim: Rim, tractions: Harmonics, remote: Remote) -> np.ndarray:
-        """Fourier coefficients of G v/R of the edge beyond the infinite plate and free expansion, n = -K to K."""
+    def _column(self, rim: Rim, tractions: Harmonics, remote: Remote) -> np.ndarray:
+        """Coefficients of the traction on the hole, own loads and G times the free thermal strain, (2 + 4 K + 4,)."""
         t = tractions(self.order)
-        moved = self.matrix @ plate_coefficients(-(t[:, 0] + t[:, 1]), -1j * (t[:, 0] - t[:, 1]))
-        for place, value in zip(REMOTE, remote[:-1], strict=True):
-            moved = moved + value * self.columns_of(LOADS[place])
-        if remote[-1]:
-            moved = moved + _thermal_stress(rim, remote[-1]) * self.columns_of(WARM)
+        on_hole = plate_coefficients(-(t[:, 0] + t[:, 1]), -1j * (t[:, 0] - t[:, 1]))
+        return np.r_[on_hole, remote[:-1], _thermal_stress(rim, remote[-1]) if remote[-1] else 0.0]
+
+    def _moved_by(self, column: np.ndarray) -> np.ndarray:
+        """Fourier coefficients of G v/R of the edge beyond the infinite plate and free expansion, n = -K to K."""
+        moved = self.matrix @ column[: len(self.matrix)]
+        for name, value in zip((*COLUMNS, WARM), column[len(self.matrix) :], strict=True):
+            if value:
+                moved = moved + value * self.columns_of(name)
         return complex_coefficients(moved)
+
+
+def _check_json(outline: str) -> None:
+    try:
+        is_table = len(outline) <= MOST_OUTLINE and isinstance(json.loads(outline), dict)
+    except (ValueError, RecursionError):
+        is_table = False
+    if not is_table:
+        raise InputError("outline", f"must be a JSON text of Lug.document with at most {MOST_OUTLINE:,} characters")
 
 
 def _thermal_stress(rim: Rim, rise: float) -> float:

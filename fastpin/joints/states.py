@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.bodies.body import Harmonics, Remote, Rim
 from fastpin.bodies.compliance import Compliance, complex_coefficients
 from fastpin.errors import InputError
 from fastpin.joints.parts import Joint
@@ -55,9 +54,8 @@ class HoleInPlate(Compliance):
         numbers = np.r_[self.nu, self.hole_radius, self.matrix.ravel(), self.incoming]
         return hashlib.sha256(self.plane.encode() + numbers.tobytes()).hexdigest()
 
-    def _edge_displacement(self, rim: Rim, tractions: Harmonics, remote: Remote) -> np.ndarray:
-        moved: np.ndarray = super()._edge_displacement(rim, tractions, remote) + complex_coefficients(self.incoming)
-        return moved
+    def _moved_by(self, column: np.ndarray) -> np.ndarray:
+        return np.asarray(super()._moved_by(column) + complex_coefficients(self.incoming))
 
 
 class StateMaker:

@@ -1,3 +1,6 @@
+from .fields import PlateField as PlateField
+from .fields import lug_of as lug_of
+from .fields import plate_field as plate_field
 from .outline import Hole as Hole
 from .outline import Lug as Lug
 from .outline import Part as Part

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 
@@ -112,6 +113,25 @@ class Part:
             return np.full(np.shape(share), (self.end - self.start) / abs(self.end - self.start))
         _, _, first, sweep = self.circle
         return 1j * math.copysign(1.0, sweep) * np.exp(1j * (first + sweep * share))
+
+    def nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The points of its line or circle that are nearest to points (m,), m, and the unit tangents there."""
+        if self.circle is None:
+            along = (self.end - self.start) / abs(self.end - self.start)
+            return self.start + along * (np.conj(along) * (points - self.start)).real, np.full(points.shape, along)
+        centre, radius, _, sweep = self.circle
+        ray = (points - centre) / np.abs(points - centre)
+        return centre + radius * ray, 1j * math.copysign(1.0, sweep) * ray
+
+    def turn_round(self, z: np.ndarray) -> np.ndarray:
+        """Angle by which the part goes round points z (m,), rad."""
+        turn = np.angle((self.end - z) * np.conj(self.start - z))
+        if self.circle is None:
+            return np.asarray(turn)
+        centre, radius, _, sweep = self.circle
+        sign = math.copysign(1.0, sweep)
+        beyond_chord = sign * (np.conj(self.end - self.start) * (z - self.start)).imag < 0.0
+        return np.asarray(turn + 2.0 * math.pi * sign * (beyond_chord & (np.abs(z - centre) < radius)))
 
     def scaled(self, factor: float) -> Part:
         """The same part with all lengths times `factor`. One that is not positive raises :class:`InputError`."""
@@ -272,6 +292,38 @@ class Lug:
         return max(float(np.abs(part.at(np.linspace(0.0, 1.0, 9))).max()) for part in self.outline)
 
     @property
+    def nearest(self) -> float:
+        """Distance of the nearest other edge from the hole's centre, in hole radii."""
+        return min(float(distances(part, np.zeros(1))[0]) for part in self.edges) / self.hole_radius
+
+    def document(self) -> dict[str, Any]:
+        """Return the outline, holes, supports and loads, JSON-ready. Without plane, Poisson's ratio and hole radius."""
+        parts: list[dict[str, Any]] = [{"name": part.name, "to": _pair(part.end)} for part in self.outline]
+        for entry, part in zip(parts, self.outline, strict=True):
+            entry |= {} if part.through is None else {"through": _pair(part.through)}
+        loads = [asdict(load) for load in self.loads]
+        holes = [{"name": hole.name, "centre": _pair(hole.centre), "radius": hole.radius} for hole in self.holes]
+        start = {"start": _pair(self.outline[0].start), "parts": parts}
+        return {**start, "holes": holes, "supports": dict(self.supports), "loads": loads}
+
+    @classmethod
+    def from_document(cls, content: Mapping[str, Any], nu: float, plane: Plane, hole_radius: float) -> Self:
+        """Return the plate of :meth:`document`. A missing or wrong entry raises :class:`InputError`."""
+        try:
+            start, parts = complex(*content["start"]), []
+            for part in content["parts"]:
+                through = complex(*part["through"]) if "through" in part else None
+                parts.append(Part(part["name"], start, complex(*part["to"]), through))
+                start = parts[-1].end
+            loads = tuple(PartLoad(**{**load, "parts": tuple(load["parts"])}) for load in content["loads"])
+            holes = tuple(Hole(hole["name"], complex(*hole["centre"]), hole["radius"]) for hole in content["holes"])
+            return cls(nu, plane, hole_radius, tuple(parts), content["supports"], loads, holes)
+        except InputError:
+            raise
+        except (KeyError, TypeError, ValueError, AttributeError):
+            raise InputError("lug", "is no plate as fastpin compliance writes it") from None
+
+    @property
     def rigid_motion(self) -> str:
         """The rigid motion that the supports leave, in words; empty if there is none."""
         size = self.extent
@@ -366,6 +418,10 @@ def distances(part: Part, points: np.ndarray) -> np.ndarray:
     return np.where(np.abs(turned) < 0.5 * abs(sweep), np.abs(np.abs(points - centre) - radius), ends)
 
 
+def _pair(z: complex) -> list[float]:
+    return [z.real, z.imag]
+
+
 def _point(z: complex) -> str:
     return f"[{z.real:.6g}, {z.imag:.6g}]"
 
@@ -424,8 +480,8 @@ def _check_holes(lug: Lug) -> None:
         circles.append(("holes", words, hole.centre, hole.radius))
     for place, (at_fault, words, centre, radius) in enumerate(circles):
         is_far = not max(abs(centre.real), abs(centre.imag)) <= MOST_EXTENT * lug.hole_radius
-        seen = _polygon(lug.outline) - centre  # round a point inside the outline turns once
-        if is_far or abs(float(np.sum(np.angle(np.roll(seen, -1) * np.conj(seen))))) <= math.pi:
+        turns = sum(float(part.turn_round(np.array([centre]))[0]) for part in lug.outline)
+        if is_far or turns <= math.pi:  # round a point inside the outline turns once
             raise InputError(at_fault, f"{words} does not lie inside the outline")
         for part in lug.outline:
             if float(distances(part, np.array([centre]))[0]) < radius + least:

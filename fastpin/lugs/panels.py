@@ -50,8 +50,8 @@ class Boundary:
     ----------
     parts : tuple of Part
         In hole radii.
-    marks : tuple of object
-        Something for each part, equal where support and loads are equal.
+    marks : tuple of tuple
+        The support and the loads of each part.
     free : tuple of bool
         Whether each part has no support.
     turn : float
@@ -59,7 +59,7 @@ class Boundary:
     """
 
     parts: tuple[Part, ...]
-    marks: tuple[object, ...]
+    marks: tuple[tuple[str | None, tuple[int, ...]], ...]
     free: tuple[bool, ...]
     turn: float = math.pi / 4 * (1.0 + 1e-9)
 
@@ -70,8 +70,7 @@ class Boundary:
         free convex corners: with 16 halvings elsewhere, 5 of them leave 4e-10 of the matrix there, and 1e-8 of the
         stress near by. Where the outline turns by a small angle, as in a polyline, none leave 3e-7.
         """
-        before, after = self.parts[place - 1], self.parts[place]
-        turn = cmath.phase(complex(after.direction(np.zeros(1))[0] / before.direction(np.ones(1))[0]))
+        before, after, turn = self.parts[place - 1], self.parts[place], self._turn(place)
         is_corner, is_free = abs(turn) > 1e-6, self.free[place - 1] and self.free[place]
         if self.marks[place - 1] != self.marks[place] or (is_corner and not is_free):
             return most
@@ -82,6 +81,22 @@ class Boundary:
         else:
             same = abs(before.circle[0] - after.circle[0]) < TOUCHING
         return 0 if same else most // 3  # a jump of the curvature is a weak singularity
+
+    def is_singular(self, place: int) -> bool:
+        """Whether the stress is infinite at the start of the part: at re-entrant corners and ends of supports.
+
+        A square corner between a free edge and one without friction is half of a straight free edge.
+        """
+        turn, same = self._turn(place), self.free[place - 1] == self.free[place]
+        return turn < -LEAST_TURN or not (same or (turn > math.pi / 2 - 1e-6 and self._slides(place)))
+
+    def _slides(self, place: int) -> bool:
+        return "both" not in (self.marks[place - 1][0], self.marks[place][0])
+
+    def _turn(self, place: int) -> float:
+        """Angle by which the edge turns at the start of the part, rad; negative at re-entrant corners."""
+        before, after = self.parts[place - 1], self.parts[place]
+        return cmath.phase(complex(after.direction(np.zeros(1))[0] / before.direction(np.ones(1))[0]))
 
 
 class Edges:
@@ -140,12 +155,26 @@ class Edges:
         """Largest distance of a node from the hole's centre."""
         return float(np.abs(self.z).max())
 
+    @property
+    def ends(self) -> tuple[np.ndarray, np.ndarray]:
+        """First and last points of the panels."""
+        places, one = np.arange(self.part.size), np.ones(self.part.size)
+        return self.at(places, -one)[0], self.at(places, one)[0]
+
     def at(self, panel: np.ndarray, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points and unit tangents of panels at s from -1 to 1."""
         straight, origin, span = self.is_straight[panel], self._origin[panel], self._span[panel]
         ray = np.exp(1j * (self._angle[panel] + self._turn[panel] * s))
         along = np.where(straight, span / np.abs(span), 1j * np.sign(self._turn[panel]) * ray)
         return origin + span * np.where(straight, s, ray), along
+
+    @cached_property
+    def derivative(self) -> np.ndarray:
+        """Slopes at the nodes of a panel from values there, for s from -1 to 1, shape (points, points)."""
+        legendre = np.polynomial.legendre
+        slopes = [legendre.legval(self.rule[0], legendre.legder(one)) for one in np.eye(self.points)]
+        found: np.ndarray = np.stack(slopes, axis=1) @ np.linalg.inv(legendre.legvander(self.rule[0], self.points - 1))
+        return found
 
     def lagrange(self, s: np.ndarray) -> np.ndarray:
         """The polynomials that are 1 at one node of a panel and 0 at the others, at s; shape (..., points)."""
@@ -255,30 +284,55 @@ def matrices(edges: Edges, kolosov: float, scale: float, progress: Callable[[flo
 
 def _near(edges: Edges, panels: np.ndarray, kolosov: float, scale: float, both: np.ndarray) -> None:
     """Replace the entries between some panels and the nodes near them."""
+    rows, columns, sums = near_integrals(
+        edges, panels, edges.z, lambda r, along: kernels(r, -1j * along, kolosov, scale)
+    )
+    for kernel, (matrix, i, j) in enumerate(PLACES):
+        both[matrix, i, rows, j, columns] = sums[:, kernel]
+
+
+def near_integrals(
+    edges: Edges, panels: np.ndarray, points: np.ndarray, kernel: Callable[[np.ndarray, np.ndarray], np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Integrals over panels and near points, of kernels times the polynomials of :meth:`Edges.lagrange`.
+
+    Parameters
+    ----------
+    edges : Edges
+    panels : ndarray of int, shape (p,)
+    points : ndarray of complex, shape (m,)
+    kernel : callable
+        ``kernel(r, along)`` gives the kernels (k, ...) at distances y - x, with unit tangents, both (...).
+
+    Returns
+    -------
+    rows, columns : ndarray of int, shape (pairs, 1) and (pairs, points of a panel)
+        The point and the nodes of the panel.
+    sums : ndarray, shape (pairs, k, points of a panel)
+    """
     samples, _ = edges.at(panels[:, None], np.linspace(-1.0, 1.0, 9))
-    distance = np.abs(edges.z[:, None] - samples[:, None, :]).min(axis=2)
+    distance = np.abs(points[:, None] - samples[:, None, :]).min(axis=2)
     place, node = np.nonzero(distance < 2.2 * edges.half[panels][:, None])  # within 1.1 lengths of a panel
     panel = panels[place]
-    pair, middle, size = _subintervals(edges, panel, node)
+    pair, middle, size = _subintervals(edges, panel, points[node])
     gauss, weights = edges.rule
     inner = middle[:, None] + size[:, None] * gauss
     y, along = edges.at(panel[pair][:, None], inner)
-    values = kernels(y - edges.z[node[pair]][:, None], -1j * along, kolosov, scale)
+    values = kernel(y - points[node[pair]][:, None], along)
     values *= weights * (size * edges.half[panel[pair]])[:, None]
     integrals = values.transpose(1, 0, 2) @ edges.lagrange(inner)  # subintervals, kernels, nodes of the panel
     starts = np.flatnonzero(np.r_[True, pair[1:] != pair[:-1]])
     sums = np.add.reduceat(integrals, starts, axis=0)
     rows = node[pair[starts]][:, None]
     columns = panel[pair[starts]][:, None] * edges.points + np.arange(edges.points)
-    for kernel, (matrix, i, j) in enumerate(PLACES):
-        both[matrix, i, rows, j, columns] = sums[:, kernel]
+    return rows, columns, sums
 
 
-def _subintervals(edges: Edges, panel: np.ndarray, node: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Subintervals of panels that are apart from nodes: the pair of panel and node in order, middle, half width.
+def _subintervals(edges: Edges, panel: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Subintervals of panels that are apart from points: the pair of panel and point in order, middle, half width.
 
-    A node is 1.5 lengths of a subinterval away from its middle. Subintervals at a node are left out below 2e-12 of the
-    panel and 1e-13 hole radii: the integrands are integrable there. This takes less than 60 halvings.
+    A point is 1.5 lengths of a subinterval away from its middle. Subintervals at a point are left out below 2e-12 of
+    the panel and 1e-13 hole radii: the integrands are integrable there. This takes less than 60 halvings.
     """
     pair = np.arange(panel.size)
     middle, size = np.zeros(panel.size), np.ones(panel.size)
@@ -286,7 +340,7 @@ def _subintervals(edges: Edges, panel: np.ndarray, node: np.ndarray) -> tuple[np
     for _ in range(60):
         centre, _ = edges.at(panel[pair], middle)
         half = edges.half[panel[pair]]
-        apart = np.abs(centre - edges.z[node[pair]]) >= 3.0 * size * half
+        apart = np.abs(centre - points[pair]) >= 3.0 * size * half
         found.append((pair[apart], middle[apart], size[apart]))
         left = ~apart & (size > np.maximum(2e-12, 1e-13 / half))
         if not left.any():

@@ -9,6 +9,7 @@ to 4e-7, in 10 s. The integral equations reach 1e-10 in 2 s. They need neither a
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ import numpy as np
 import scipy.linalg
 from threadpoolctl import threadpool_limits
 
-from fastpin.bodies.compliance import LEAST_ORDER, MOST_ORDER, WARM, Compliance
+from fastpin.bodies.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER, WARM, Compliance
 from fastpin.errors import InputError
 from fastpin.lugs.outline import Hole, Lug, Part
 from fastpin.lugs.panels import Boundary, Edges, Fineness, matrices
@@ -78,6 +79,8 @@ class Response:
         Components along x and y.
     t : ndarray, shape (2, nodes, 2 + 4 K + loads)
         The given tractions, along x and y.
+    reactions : ndarray, shape (2, nodes, 2 + 4 K + loads + 1)
+        Tractions on held edges, along x and y; the last column belongs to `warm`.
     loads : tuple of str
         Names of the loads.
     warm : ndarray, shape (2, nodes)
@@ -90,9 +93,23 @@ class Response:
     edges: Edges
     u: np.ndarray
     t: np.ndarray
+    reactions: np.ndarray
     loads: tuple[str, ...]
     warm: np.ndarray
     resultants: np.ndarray | None = None
+
+    def whole(self) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and tractions on all nodes, complex, both (nodes, 2 + 4 K + 4).
+
+        The last columns belong to the loads sxx, syy and sxy, zero where the plate has none, and to `warm`.
+        """
+        size = self.t.shape[2] - len(self.loads)
+        places = {name: size + k for k, name in enumerate((*self.loads, WARM))}
+        chosen = [*range(size), *(places.get(name, -1) for name in (*COLUMNS, WARM))]
+        none = np.zeros((2, self.edges.z.size, 1))
+        u, t = np.dstack([self.u, self.warm[..., None], none]), np.dstack([self.t, none, none])
+        t[:, :, :-1] += self.reactions
+        return u[0][:, chosen] + 1j * u[1][:, chosen], t[0][:, chosen] + 1j * t[1][:, chosen]
 
     def projected(self) -> np.ndarray:
         """Coefficients G v/R on the hole's edge, shape (2 + 4 K, 2 + 4 K + loads)."""
@@ -161,7 +178,8 @@ def plate_compliance(
     matrix = whole[:, :cut] - hole_compliance(kept, lug.kolosov)
     columns = {name: whole[:, cut + place] for place, name in enumerate((*fine.loads, WARM))}
     try:
-        made = Compliance(lug.nu, lug.plane, lug.hole_radius, 0.5 * (matrix + matrix.T), columns, made_by)
+        outline = "" if lug.floats else json.dumps(lug.document())
+        made = Compliance(lug.nu, lug.plane, lug.hole_radius, 0.5 * (matrix + matrix.T), columns, made_by, outline)
     except InputError as error:
         raise InputError("harmonics" if "more harmonics" in error.reason else error.field, error.reason) from None
     return PlateResult(
@@ -222,7 +240,7 @@ def respond(
 
     `pinned` names further holes with a pin. Their radius is that of the first hole.
     """
-    edges = Edges(_loops(lug, order, pinned), fineness)
+    edges = Edges(boundaries(lug, order, pinned), fineness)
     held, frame = _supports(lug, edges)
     # At 1 (nu = 0.5 in plane strain) the pressure on an outline that is held all round moves nothing, and the equations
     # have no unique solution. The matrix changes by 1e-7.
@@ -251,17 +269,20 @@ def respond(
         right = U @ along.reshape(size, -1)
         back = -2.0 * np.stack([_dot(frame, edges.z[:, None]), _dot(1j * frame, edges.z[:, None])])
         back[~held] = 0.0  # 2G u is 2 by a unit of G times the strain
-        of_supports = -T @ back.reshape(size, 1)
+        moved = -T @ back.reshape(size, 1)
         T[:, held.reshape(-1)] = -U[:, held.reshape(-1)]
         factors = scipy.linalg.lu_factor(T.T, overwrite_a=True, check_finite=False)
         found = scipy.linalg.lu_solve(factors, right, trans=1, check_finite=False).reshape(along.shape)
-        warm = scipy.linalg.lu_solve(factors, of_supports, trans=1, check_finite=False).reshape(back.shape)
+        warm = scipy.linalg.lu_solve(factors, moved, trans=1, check_finite=False).reshape(back.shape)
     progress(1.0)
+    of_supports = np.where(held[..., None], np.concatenate([found, warm], axis=2), 0.0)
     found[held], warm[held] = 0.0, back[held]
     c, s = frame.real[:, None], frame.imag[:, None]
-    u, by_supports = (np.stack([c * one - s * two, s * one + c * two]) for one, two in (found, warm))
+    u, by_supports, reactions = (
+        np.stack([c * one - s * two, s * one + c * two]) for one, two in (found, warm, of_supports)
+    )
     given = np.stack([tractions.real, tractions.imag])
-    return Response(edges, u, given, loads, by_supports[..., 0], resultants)
+    return Response(edges, u, given, reactions, loads, by_supports[..., 0], resultants)
 
 
 class RigidModes(NamedTuple):
@@ -309,10 +330,10 @@ def _dot(along: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return found
 
 
-def _loops(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Boundary]:
+def boundaries(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Boundary]:
     """All edges in hole radii; the first one is the edge of the pin's hole."""
 
-    def marks(name: str) -> object:
+    def marks(name: str) -> tuple[str | None, tuple[int, ...]]:
         return lug.supports.get(name), tuple(place for place, load in enumerate(lug.loads) if name in load.parts)
 
     def scaled(parts: tuple[Part, ...]) -> tuple[Part, ...]:
@@ -320,7 +341,7 @@ def _loops(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Boundary]
 
     # Ten nodes on 4 rad of a harmonic integrate a product of two such harmonics to 1e-12, eight nodes to 1e-8.
     turn, count = min(Boundary.turn, 4.0 / order), len(lug.contact_edge)
-    loops = [Boundary(scaled(lug.contact_edge), (None,) * count, (True,) * count, turn)]
+    loops = [Boundary(scaled(lug.contact_edge), ((None, ()),) * count, (True,) * count, turn)]
     for names, parts in [
         ([part.name for part in lug.outline], lug.outline),
         *(([hole.name] * len(hole.parts), hole.parts) for hole in lug.holes),

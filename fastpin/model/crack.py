@@ -126,7 +126,7 @@ def check_crack(problem: Problem, crack: CrackGrowth) -> None:
     if material_of(problem, body).is_rigid:
         raise InputError("body", f"the {owner_of(problem, body)} is rigid: no crack grows in it")
     isotropic_material("body", problem, body, "a stress intensity")
-    if problem.plate_body.lug.edge_only and (body == "seat" or problem.joint.bush is None):
+    if not problem.plate_body.lug.has_inside and (body == "seat" or problem.joint.bush is None):
         raise InputError("body", NO_INSIDE)
     check_length("last", problem, body, crack.angle, crack.last)
     law_of(problem, crack)

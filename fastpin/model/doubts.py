@@ -151,11 +151,12 @@ def are_loads_plausible(problem: Problem, history: LoadHistory) -> bool:
 
 
 def yield_doubt(problem: Problem, edge: str, stress: float, where: str) -> InputWarning | None:
-    """A warning if the von Mises `stress`, Pa, at an edge of :data:`EDGES` exceeds the yield strength there.
+    """A warning if the von Mises `stress`, Pa, at an edge exceeds the yield strength there.
 
-    `where` tells the angle and the load, for example "before any load".
+    The edge is one of :data:`EDGES`, or a further one of the plate. `where` tells the angle and the load, for example
+    "before any load".
     """
-    name, words = EDGES[edge]
+    name, words = EDGES.get(edge, ("plate", "in the plate"))
     material = problem.joint.materials[name]
     strength = material.known_yield_strength
     if strength is None or not stress > strength >= LEAST_STRENGTH * material.E:

@@ -127,11 +127,22 @@ class Points(ReadOnly):
             if far is not None and np.any(depth > wall + ROUNDING * max(1.0, wall)):
                 rim = "at least the bore" if body == "pin" else "at most the outer"
                 raise InputError("radius", f"must be {rim} radius of {far * radius:g} in the {body}")
-        known = near + known_depth(problem, body)
-        if body != "pin" and np.any(near + depth > known * (1.0 + ROUNDING)):
-            reach = units(problem)["length"].text(known * radius)
-            raise InputError("points", f"a compliance gives the stress near the hole only: up to the radius {reach}")
+        if body != "pin":
+            _check_inside(problem, ((near + depth) * np.exp(1j * self.theta)).ravel())
         return np.minimum(depth, wall)
+
+
+def _check_inside(problem: Problem, z: np.ndarray) -> None:
+    """Check that the stress of the plate is known at points, complex, in hole radii."""
+    lug, hole, length = problem.plate_body.lug, problem.joint.bush or 1.0, units(problem)["length"]
+    outside = z[~lug.contains(z / hole)]
+    if outside.size and lug.has_inside:
+        x, y = (length.text(value * problem.hole_radius) for value in (outside[0].real, outside[0].imag))
+        raise InputError("points", f"must lie in the plate, and x = {x}, y = {y} does not")
+    if outside.size:
+        known = length.text(lug.reach * hole * problem.hole_radius)
+        words = f"a compliance gives the stress near the hole only: up to the radius {known}"
+        raise InputError("points", f"{words}; a file with the outline gives it everywhere")
 
 
 def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:

@@ -79,8 +79,8 @@ class Margin(NamedTuple):
 
 
 def part_of(problem: Problem, owner: str) -> str:
-    """Where alone a body is looked at; empty if that is everywhere. A compliance knows the stress near its hole."""
-    return "near the hole only" if owner == "plate" and problem.plate_body.lug.edge_only else ""
+    """Where alone a body is looked at; empty if that is everywhere."""
+    return "" if owner != "plate" else problem.plate_body.lug.looked_at
 
 
 def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:

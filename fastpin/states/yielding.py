@@ -1,7 +1,7 @@
 """The largest von Mises stress of each body in a state.
 
 The stress is looked at on circles: the edges of the body, and circles below the edge that the contact or the bush
-loads. Under a contact the largest stress lies below the edge.
+loads. Under a contact the largest stress lies below the edge. A plate of any outline has further edges.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fastpin.model.angles import from_bottom
+from fastpin.model.checks import as_toml
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points, elastic_bodies, known_depth, material_of, near_rim
 from fastpin.model.problem import Problem
@@ -40,9 +41,9 @@ class Circle(NamedTuple):
     body : {"plate", "pin", "seat"}
         The body of its points.
     depth : float
-        Depth of its points in the body, in units of the hole's radius.
+        Depth of its points in the body, in units of the hole's radius; NaN on a further edge of a plate.
     edge : str
-        A key of :data:`fastpin.model.doubts.EDGES`: the edge, or the one above the circle.
+        A key of :data:`fastpin.model.doubts.EDGES`: the edge, or the one above the circle. A further edge has its name.
     """
 
     owner: str
@@ -51,9 +52,14 @@ class Circle(NamedTuple):
     edge: str
 
     @property
+    def is_further(self) -> bool:
+        """Whether it is an edge of an outline, and no circle round the hole."""
+        return math.isnan(self.depth)
+
+    @property
     def is_edge(self) -> bool:
         """Whether the circle is an edge."""
-        return self.depth == 0.0 or self.edge in ("rim of the bush", "bore of the pin")
+        return self.depth == 0.0 or self.is_further or self.edge in ("rim of the bush", "bore of the pin")
 
 
 def circles(problem: Problem) -> Iterator[Circle]:
@@ -112,6 +118,11 @@ class Places(NamedTuple):
                 theta.append(there)
                 depth.append(np.full(there.size, one.depth))
                 circle += [one] * there.size
+        if owner == "plate":
+            (z, names), hole = problem.plate_body.lug.rims, problem.joint.bush or 1.0
+            theta.append(np.angle(z))
+            depth.append(hole * (np.abs(z) - 1.0))
+            circle += [Circle(owner, circle[0].body, math.nan, name) for name in names]
         return cls(circle[0].body, np.concatenate(theta), np.concatenate(depth), circle)
 
     def von_mises(self, problem: Problem, stress: np.ndarray) -> np.ndarray:
@@ -131,11 +142,14 @@ class MisesPeak(NamedTuple):
         Pa.
     angle : float
         Its place, rad.
+    depth : float
+        Depth of the place, in units of the hole's radius.
     circle : Circle
     """
 
     value: float
     angle: float
+    depth: float
     circle: Circle
 
 
@@ -148,7 +162,7 @@ def von_mises_peak(state: State, owner: str, edges_only: bool = False) -> MisesP
     points = Points.at_depth(places.depth * state.problem.hole_radius, places.theta)
     found = state.stress(points, places.body, straight=True).von_mises
     top = top_angle(found, places.theta)
-    return MisesPeak(float(found[top]), float(places.theta[top]), places.circle[top])
+    return MisesPeak(float(found[top]), float(places.theta[top]), float(places.depth[top]), places.circle[top])
 
 
 def yielding_owners(problem: Problem) -> dict[str, float]:
@@ -166,6 +180,10 @@ def yielding_owners(problem: Problem) -> dict[str, float]:
 
 
 def place_words(problem: Problem, peak: MisesPeak) -> str:
-    """Words for the place of a peak: its depth below the edge if it has one, and its angle."""
+    """Words for the place of a peak: its depth below the edge if it has one, and its angle; or where on an outline."""
+    if peak.circle.is_further:
+        away = problem.hole_radius * (near_rim(problem, peak.circle.body) + peak.depth)
+        x, y = (units(problem)["length"].text(away * part(peak.angle), 3) for part in (math.cos, math.sin))
+        return f"on the edge {as_toml(peak.circle.edge)}, at x = {x}, y = {y}"
     depth = units(problem)["length"].text(peak.circle.depth * problem.hole_radius, 3)
     return f"{'' if peak.circle.is_edge else f'{depth} below the edge, '}at {from_bottom(peak.angle):z.1f} deg"

@@ -103,6 +103,8 @@ def _write(parent: h5py.Group, name: str, entries: Mapping[str, Any]) -> None:
             group[key] = np.array(value)
         elif isinstance(value, np.ndarray):
             group[key] = value
+        elif isinstance(value, bytes):  # an attribute has too little room
+            group[key] = np.frombuffer(value, dtype=np.int8)
         elif value is not None:
             group.attrs[key] = value
 
@@ -120,6 +122,9 @@ def _read_body(group: h5py.Group) -> BodyBase:
         given[name] = dataset_of(group, name, float)[()]
     for name in KINDS[kind].named_arrays:
         given[name] = {each: dataset_of(group[name], each, float)[()] for each in group[name]}
+    for name in KINDS[kind].texts:
+        if name in group:
+            given[name] = dataset_of(group, name, np.int8)[()].tobytes().decode(errors="replace")
     if "material" in group:
         given["material"] = read_material(group["material"])
     if "inside" in group:

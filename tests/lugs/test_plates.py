@@ -247,7 +247,7 @@ def test_fourteen_straight_sides_are_taken(monkeypatch):
     sides = [Part(f"side {k}", corners[k], corners[(k + 1) % 14]) for k in range(14)]
     lug = plate(outline=tuple(sides), supports={"side 6": "both"})
     assert plate_compliance(lug, 4).error < 1e-4
-    assert panels.Edges(plates._loops(lug, 8), Fineness(10, 16)).z.size < 3000
+    assert panels.Edges(plates.boundaries(lug, 8), Fineness(10, 16)).z.size < 3000
 
 
 @pytest.mark.gate
@@ -299,7 +299,7 @@ def test_too_many_nodes_are_refused(monkeypatch):
 
 
 def loops():
-    return plates._loops(plate(holes=(Hole("bolt", 3j, 0.8),)), 4)
+    return plates.boundaries(plate(holes=(Hole("bolt", 3j, 0.8),)), 4)
 
 
 def test_panels_cover_all_edges():
