@@ -389,16 +389,6 @@ class Compliance(PlateBody):
     def has_inside(self) -> bool:
         return bool(self.outline)
 
-    @cached_property
-    def reach(self) -> float:
-        return self._inside.nearest if self.outline else self._near
-
-    def contains(self, z: np.ndarray) -> np.ndarray:
-        near = np.abs(z) <= self._near * (1.0 + 1e-14)
-        if self.outline and not near.all():
-            near[~near] = self._inside.contains(z[~near])
-        return near
-
     @property
     def rims(self) -> tuple[np.ndarray, list[str]]:
         return self._inside.rims if self.outline else super().rims
@@ -413,12 +403,18 @@ class Compliance(PlateBody):
 
         return lugs.plate_field(self)
 
-    @cached_property
-    def _near(self) -> float:
-        """Largest radius at which the harmonics give the stress, in radii of the hole.
+    def contains(self, z: np.ndarray) -> np.ndarray:
+        return self._inside.contains(z) if self.outline else np.abs(z) <= self.reach * (1.0 + 1e-14)
 
-        Entries of the matrix fall like d^-2n with the harmonic n, where d is the radius of the nearest other edge.
+    @cached_property
+    def reach(self) -> float:
+        """Largest radius at which the stress is known all round, in radii of the hole.
+
+        Without an outline it follows from the entries of the matrix. They fall like d^-2n with the harmonic n, where d
+        is the radius of the nearest other edge.
         """
+        if self.outline:
+            return self._inside.nearest
         size = np.abs(self.matrix).max(axis=1)[6:].reshape(-1, 4).max(axis=1)  # of the harmonics 2 to K
         size = np.maximum.accumulate(size[::-1])[::-1]  # in a symmetric plate some harmonics vanish
         if size[0] == 0.0:
@@ -429,9 +425,8 @@ class Compliance(PlateBody):
         return 1.0 + NEAREST_PART * (min(nearest, FARTHEST) - 1.0)
 
     def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
-        """The smooth field, which leaves the hole free of traction; (T48) near the hole, and (T60) beyond."""
-        column = self._column(rim, tractions, remote)
-        moved = self._moved_by(column)
+        """The smooth field, which leaves the hole free of traction: near the hole (T48), or by its outline (T60)."""
+        moved = self._moved_by(self._column(rim, tractions, remote, self.order))
         moved[np.abs(moved) < 1e-10 * np.abs(moved).max()] = 0.0  # their noise grows like r^n
         order = np.arange(self.order + 1.0)
         amplitudes = 2.0 / (rim.kolosov + 1.0) * (np.arange(-self.order, self.order + 1.0) + 1.0) * moved
@@ -439,23 +434,23 @@ class Compliance(PlateBody):
         growing = np.array([a, order * a, (1.0 - order) * a + np.conj(b)])
         decaying = np.array([b, -order * b, (1.0 + order) * b + np.conj(a)])
         decaying[:, 0] = 0.0  # the constant belongs to the growing ones
-        far = self._near
-        near = Wall(growing * far**order / [[1.0], [1.0], [far * far]], decaying, 1.0, far)
-        if not self.outline:
-            return PlateWalls(near, None)
-        growing[:2], growing[2, 2:] = 0.0, 0.0  # what is left has negative powers of z
-        return PlateWalls(near, None, Wall(growing, decaying, 1.0, 1.0, (partial(self._inside.smooth, column),)))
+        if self.outline:
+            growing[:2], growing[2, 2:] = 0.0, 0.0  # what is left has negative powers of z
+            column = self._column(rim, tractions, remote, self._inside.order)
+            return PlateWalls(Wall(growing, decaying, 1.0, 1.0, (partial(self._inside.smooth, column),)), None)
+        far = self.reach
+        return PlateWalls(Wall(growing * far**order / [[1.0], [1.0], [far * far]], decaying, 1.0, far), None)
 
     def add_edge_hoop(self, hoop: np.ndarray, rim: Rim, tractions: Harmonics, remote: Remote, at: np.ndarray) -> None:
         """Add the hoop stress on the edge beyond the infinite plate at the angles `at`, shape (m,); (T48)."""
         order = np.arange(-self.order, self.order + 1.0)
         waves = np.exp(1j * np.multiply.outer(at, order))
-        moved = self._moved_by(self._column(rim, tractions, remote))
+        moved = self._moved_by(self._column(rim, tractions, remote, self.order))
         hoop += 8.0 / (rim.kolosov + 1.0) * np.real(waves @ ((1.0 + order) * moved))
 
-    def _column(self, rim: Rim, tractions: Harmonics, remote: Remote) -> np.ndarray:
+    def _column(self, rim: Rim, tractions: Harmonics, remote: Remote, order: int) -> np.ndarray:
         """Coefficients of the traction on the hole, own loads and G times the free thermal strain, (2 + 4 K + 4,)."""
-        t = tractions(self.order)
+        t = tractions(order)
         on_hole = plate_coefficients(-(t[:, 0] + t[:, 1]), -1j * (t[:, 0] - t[:, 1]))
         return np.r_[on_hole, remote[:-1], _thermal_stress(rim, remote[-1]) if remote[-1] else 0.0]
 

@@ -49,13 +49,11 @@ class Wall(NamedTuple):
 class PlateWalls(NamedTuple):
     """The smooth fields of a plate: at the contact, and in the lug beyond a bush in units of its own hole's radius.
 
-    The lug's field is whole. Only in an infinite plate under remote stress Kirsch's field comes on top. Where `far` is
-    given, it holds beyond the largest radius of `surface`.
+    The lug's field is whole. Only in an infinite plate under remote stress Kirsch's field comes on top.
     """
 
     surface: Wall
     lug: Wall | None
-    far: Wall | None = None
 
 
 class Amplitudes(NamedTuple):

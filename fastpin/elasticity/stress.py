@@ -53,23 +53,13 @@ def plate_stress(
     walls = plate_walls(problem, tractions, tuple(float(value) for value in remote))
     if walls is None or walls.lug is None:
         found = hole_stress(kolosov, tractions, far, theta, depth)
-        return found if walls is None else found + _smooth(walls, theta, 1.0 + depth)
+        return found if walls is None else found + polar(walls.surface, theta, 1.0 + depth)
     found, beyond = np.empty((3, theta.size)), is_beyond_bush(problem, depth)
     inside = ~beyond
     found[:, inside] = hole_stress(kolosov, tractions, none, theta[inside], depth[inside])
     found[:, inside] += polar(walls.surface, theta[inside], 1.0 + depth[inside])
     below = 1.0 + depth[beyond] - (problem.joint.bush or 1.0)
     found[:, beyond] = seat_stress(problem, tractions, remote, theta[beyond], below)
-    return found
-
-
-def _smooth(walls: PlateWalls, theta: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Stresses (srr, stt, srt), shape (3, m), of the field at the contact, or beyond it where there is one."""
-    if walls.far is None:
-        return polar(walls.surface, theta, radius)
-    found, near = np.empty((3, theta.size)), radius <= walls.surface.largest
-    found[:, near] = polar(walls.surface, theta[near], radius[near])
-    found[:, ~near] = polar(walls.far, theta[~near], radius[~near])
     return found
 
 

@@ -131,6 +131,7 @@ class Part:
         centre, radius, _, sweep = self.circle
         sign = math.copysign(1.0, sweep)
         beyond_chord = sign * (np.conj(self.end - self.start) * (z - self.start)).imag < 0.0
+        turn = np.abs(turn) * np.where(beyond_chord, -sign, sign)  # also on the chord, where it is a half turn
         return np.asarray(turn + 2.0 * math.pi * sign * (beyond_chord & (np.abs(z - centre) < radius)))
 
     def scaled(self, factor: float) -> Part:

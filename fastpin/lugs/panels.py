@@ -80,7 +80,7 @@ class Boundary:
             same = before.circle is after.circle
         else:
             same = abs(before.circle[0] - after.circle[0]) < TOUCHING
-        return 0 if same else most // 3  # a jump of the curvature is a weak singularity
+        return 0 if same else most // 2  # a jump of the curvature is a weak singularity
 
     def is_singular(self, place: int) -> bool:
         """Whether the stress is infinite at the start of the part: at re-entrant corners and ends of supports.
@@ -321,7 +321,7 @@ def near_integrals(
     values = kernel(y - points[node[pair]][:, None], along)
     values *= weights * (size * edges.half[panel[pair]])[:, None]
     integrals = values.transpose(1, 0, 2) @ edges.lagrange(inner)  # subintervals, kernels, nodes of the panel
-    starts = np.flatnonzero(np.r_[True, pair[1:] != pair[:-1]])
+    starts = np.flatnonzero(np.diff(pair, prepend=-1))
     sums = np.add.reduceat(integrals, starts, axis=0)
     rows = node[pair[starts]][:, None]
     columns = panel[pair[starts]][:, None] * edges.points + np.arange(edges.points)
