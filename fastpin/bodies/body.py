@@ -336,9 +336,8 @@ class PlateBody(BodyBase):
         """Points on the edges of a plate of any outline, in radii of its own hole, and the names of these edges."""
         return np.zeros(0, dtype=complex), []
 
-    @property
-    def looked_at(self) -> str:
-        """Where alone a largest stress is looked for, in words; empty if that is everywhere."""
+    def looked_at(self, radius: float, length: InWords) -> str:
+        """Where alone a largest stress is looked for, in words; empty if that is everywhere. `radius` is the hole's, m."""
         return ""
 
     @property

@@ -75,6 +75,9 @@ MOST_BYTES = 10_000_000
 MOST_OUTLINE = 1_000_000
 """Most characters of an outline."""
 
+MOST_NAMED = 4
+"""Most singular places that are named."""
+
 FARTHEST = 100.0
 """Radius of the nearest other edge that is looked for, at most, in radii of the hole."""
 
@@ -393,9 +396,13 @@ class Compliance(PlateBody):
     def rims(self) -> tuple[np.ndarray, list[str]]:
         return self._inside.rims if self.outline else super().rims
 
-    @property
-    def looked_at(self) -> str:
-        return self._inside.apart if self.outline else "near the hole only"
+    def looked_at(self, radius: float, length: InWords) -> str:
+        if not self.outline:
+            return "near the hole only"
+        places, apart = self._inside.singular * radius, self._inside.apart * radius
+        named = ", ".join(f"[{length(z.real)}, {length(z.imag)}]" for z in places[:MOST_NAMED].tolist())
+        more = f" and {len(places) - MOST_NAMED} more" if len(places) > MOST_NAMED else ""
+        return f"apart from {length(apart)} about sharp corners and ends of supports: {named}{more}" if named else ""
 
     @property
     def _inside(self) -> PlateField:

@@ -38,14 +38,8 @@ MOST_HARMONICS = 60
 CLOSEST = 1e-8
 """Distance from an edge below which a point is taken to be so far inside, hole radii. Nothing is lost there."""
 
-APART = 0.25
-"""Distance from a singular place within which no largest stress is looked for, hole radii."""
-
 LEAST_PANEL = 0.004
 """Half length of the panels on which a largest stress is looked for, hole radii; shorter ones crowd at corners."""
-
-MOST_NAMED = 4
-"""Singular places that are named."""
 
 MOST_POINTS = 5_000
 """Points whose stresses are kept for other states, at most."""
@@ -75,9 +69,13 @@ class PlateField:
         Distance of the nearest other edge from the hole's centre.
     singular : ndarray of complex
         Places on other edges at which the stress is infinite.
+    apart : float
+        Distance from them within which no largest stress is looked for.
     matrix : ndarray, shape (2 + 4 K, 2 + 4 K)
         Coefficients G v/R on the hole's edge.
     """
+
+    apart = 0.25  # hole radii
 
     def __init__(self, lug: Lug, order: int) -> None:
         self.order = order
@@ -118,18 +116,9 @@ class PlateField:
         """Points on the other edges, apart from singular places, and the names of their edges."""
         edges = self.edges
         kept = self._outer & (edges.half[edges.panel] > LEAST_PANEL)
-        kept &= (np.abs(edges.z[:, None] - self.singular) > APART).all(axis=1)
+        kept &= (np.abs(edges.z[:, None] - self.singular) > self.apart).all(axis=1)
         names = [edges.parts[part].name for part in edges.part_of_node[kept]]
         return edges.z[kept], names
-
-    @property
-    def apart(self) -> str:
-        """Where no largest stress is looked for, in words; empty if there is no such place."""
-        if not self.singular.size:
-            return ""
-        places = ", ".join(f"[{z.real:.4g}, {z.imag:.4g}]" for z in self.singular[:MOST_NAMED])
-        more = f" and {self.singular.size - MOST_NAMED} more" if self.singular.size > MOST_NAMED else ""
-        return f"apart from {APART:g} R about sharp corners and ends of supports, in R: {places}{more}"
 
     def smooth(self, column: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The part of the smooth field that the integrals give: s_rr + s_tt and s_rr - i s_rt at points z (m,)."""

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from fastpin.model.angles import from_bottom
-from fastpin.model.points import bodies_of, elastic_bodies, material_of, owner_of
+from fastpin.model.points import bodies_of, elastic_bodies, material_of, near_rim, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.extremes import Found
@@ -80,7 +80,8 @@ class Margin(NamedTuple):
 
 def part_of(problem: Problem, owner: str) -> str:
     """Where alone a body is looked at; empty if that is everywhere."""
-    return "" if owner != "plate" else problem.plate_body.lug.looked_at
+    radius, length = near_rim(problem, "seat") * problem.hole_radius, units(problem)["length"]
+    return "" if owner != "plate" else problem.plate_body.lug.looked_at(radius, lambda size: length.text(size, 3))
 
 
 def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:

@@ -221,6 +221,7 @@ def test_the_outline_of_another_plate_is_refused(monkeypatch):
         replace(body, outline="[1")
 
 
+@pytest.mark.gate
 def test_largest_stresses_are_looked_for_on_all_edges(monkeypatch):
     """The largest stress is on a narrow neck. Its sharp corners and its held end are named, and left out."""
     names = ("step", "neck", "top", "neck", "step", "left", "bottom", "right")
@@ -230,12 +231,10 @@ def test_largest_stresses_are_looked_for_on_all_edges(monkeypatch):
     state = solve(problem_with(body), [{"P": 1.0}], nodes=41)[-1]
     peak = von_mises_peak(state, "plate")
     assert state.stress(Points.at_xy(0.3, 6.0)).von_mises == pytest.approx(1.0 / 0.6, rel=0.01)
-    assert peak.value > 1.0 / 0.6
-    corners = np.array([0.3 + 3j, -0.3 + 3j])
-    place = (1.0 + peak.depth) * np.exp(1j * peak.angle)
-    assert 0.25 < np.abs(place - corners).min() < 0.35
+    assert peak.value == pytest.approx(1.0 / 0.6, rel=0.02)
     assert place_words(state.problem, peak).startswith('on the edge "neck", at x = ')
     assert abs((1.0 + peak.depth) * math.cos(peak.angle)) == pytest.approx(0.3)
     assert part_of(state.problem, "plate") == (
-        "apart from 0.25 R about sharp corners and ends of supports, in R: [0.3, 3], [0.3, 9], [-0.3, 9], [-0.3, 3]"
+        "apart from 0.25 R about sharp corners and ends of supports: "
+        "[0.3 R, 3 R], [0.3 R, 9 R], [-0.3 R, 9 R], [-0.3 R, 3 R]"
     )
