@@ -337,7 +337,7 @@ class PlateBody(BodyBase):
         return np.zeros(0, dtype=complex), []
 
     def looked_at(self, radius: float, length: InWords) -> str:
-        """Where alone a largest stress is looked for, in words; empty if that is everywhere. `radius` is the hole's, m."""
+        """Where alone a largest stress is looked for, in words; empty if everywhere. `radius` is that of its hole, m."""
         return ""
 
     @property

@@ -432,7 +432,7 @@ class Compliance(PlateBody):
         return 1.0 + NEAREST_PART * (min(nearest, FARTHEST) - 1.0)
 
     def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
-        """The smooth field, which leaves the hole free of traction: near the hole (T48), or by its outline (T60)."""
+        """The smooth field, which leaves the hole free of traction: near the hole (T48), or by its outline (T59)."""
         moved = self._moved_by(self._column(rim, tractions, remote, self.order))
         moved[np.abs(moved) < 1e-10 * np.abs(moved).max()] = 0.0  # their noise grows like r^n
         order = np.arange(self.order + 1.0)

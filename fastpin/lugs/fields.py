@@ -1,7 +1,7 @@
 """The stress anywhere in a plate of any outline, from what the integral equations of its compliance solve.
 
 With Kolosov's potentials, S = conj(z) Phi' + Psi, the unit tangent tau of an edge with the plate to its left, and the
-traction t on the plate, every edge has (k + 1) Phi tau = d(2G u)/ds + i t. Cauchy's integrals give both inside, (T60):
+traction t on the plate, every edge has (k + 1) Phi tau = d(2G u)/ds + i t. Cauchy's integrals give both inside, (T59):
 
     2 pi i Phi(z) = int Phi dt/(t - z)
     2 pi i S(z) = int (-conj(Phi tau) - i conj(t)) ds/(t - z) - int Phi conj(t - z)/(t - z)^2 dt
