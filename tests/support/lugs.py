@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fastpin.bodies.compliance import complex_coefficients
 from fastpin.lugs import plates
 from fastpin.lugs.outline import Lug, Part, rectangle
 from fastpin.lugs.panels import Fineness
@@ -36,3 +37,14 @@ def make_coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     """Compute compliances with fewer nodes, where their accuracy does not matter: errors of 1e-5."""
     monkeypatch.setattr(plates, "FINE", Fineness(8, 8))
     monkeypatch.setattr(plates, "COARSE", Fineness(6, 6))
+
+
+def edge_stress(response: plates.Response, kolosov: float, angles: np.ndarray, column: int) -> np.ndarray:
+    """Hoop stress of the hole at some angles, rad, under a unit of one column of a response."""
+    size = response.t.shape[2] - len(response.loads)
+    moved = complex_coefficients(response.projected()[:, column])
+    given = complex_coefficients(np.eye(size)[column]) if column < size else np.zeros_like(moved)
+    order = np.arange(-(len(moved) // 2), len(moved) // 2 + 1)
+    waves = np.exp(1j * np.multiply.outer(angles, order))
+    potential = waves @ (2.0 * (order + 1.0) * moved - given) / (kolosov + 1.0)
+    return np.asarray(4.0 * potential.real + (waves @ given).real)
