@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from fastpin.bodies.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER
+from fastpin.casefile.outlines import FILE_KEYS, drawn_outline, renamed
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.lugs.outline import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
@@ -24,8 +25,8 @@ LUG_EXAMPLE = Path(__file__).with_name("lug.toml").read_text(encoding="utf-8")
 
 LUG_KEYS: dict[str, tuple[str, ...]] = {
     "plate": ("material", "nu", "plane", "hole_radius"),
-    "outline": ("shape", "x", "y", "start"),
-    "part": ("name", "to", "through"),
+    "outline": ("shape", "x", "y", "start", *FILE_KEYS),
+    "part": ("name", "to", "through", "at"),
     "hole": ("name", "centre", "radius"),
     "support": ("parts", "hold"),
     "load": ("name", "parts", "x", "y", "normal"),
@@ -46,11 +47,14 @@ class LugFile(NamedTuple):
     title : str
     harmonics : int or None
         The highest harmonic; None: chosen by the decay.
+    notes : tuple of str
+        Sentences on an outline from a file: its sides, and the arcs that were fitted.
     """
 
     lug: Lug
     title: str
     harmonics: int | None
+    notes: tuple[str, ...] = ()
 
 
 def read_lug(path: str | Path) -> LugFile:
@@ -62,21 +66,24 @@ def read_lug(path: str | Path) -> LugFile:
         See :func:`fastpin.read_case`.
     """
     path = file_path("path", path)
-    return parse_lug(read_text(path), str(path))
+    return parse_lug(read_text(path), str(path), path.parent)
 
 
-def parse_lug(text: str, name: str = "lug file") -> LugFile:
-    """Read a lug from a TOML text. `name` is the name of the file in error messages.
+def parse_lug(text: str, name: str = "lug file", folder: str | Path = ".") -> LugFile:
+    """Read a lug from a TOML text.
+
+    `name` is the name of the file in error messages. Files that the text names are looked for in the `folder`.
 
     Raises
     ------
     CaseFileError, InputError
         See :func:`fastpin.read_case`.
     """
-    return parse_text(text, name, "lug file", _lug_file)
+    place = file_path("folder", folder)
+    return parse_text(text, name, "lug file", lambda source: _lug_file(source, place))
 
 
-def _lug_file(source: CaseText) -> LugFile | None:
+def _lug_file(source: CaseText, folder: Path) -> LugFile | None:
     source.to_si(LUG, False)
     source.check_sections(LUG_KEYS, BLOCKS)
     title = source.root.checked("title", string) or ""
@@ -85,8 +92,8 @@ def _lug_file(source: CaseText) -> LugFile | None:
     radius = plate.checked("hole_radius", number, LEAST_RADIUS, MOST_RADIUS)
     if plate.present:
         plate.require("hole_radius")
-    outline = _outline(source)
     holes = [_hole(section) for section in source.blocks("hole")]
+    outline, notes = _outline(source, folder, radius, [hole for hole in holes if hole is not None])
     names = [part.name for part in outline or ()] + [hole.name for hole in holes if hole is not None]
     known = names if outline is not None and None not in holes else None
     supports = _supports(source, known)
@@ -100,9 +107,10 @@ def _lug_file(source: CaseText) -> LugFile | None:
     except InputError as error:
         places = {"holes": ("hole",), "radius": ("hole",), "hole_radius": ("plate", "hole_radius")}
         section, *key = places.get(error.field, (error.field,))
-        source.report(str(error), section, *key)
+        is_drawn = section == "outline" and "file" in source.section("outline")
+        source.report(str(error), section, *(("file",) if is_drawn else key))
         return None
-    return LugFile(lug, title, harmonics)
+    return LugFile(lug, title, harmonics, notes)
 
 
 def _poisson_ratio(plate: Section) -> float | None:
@@ -118,11 +126,38 @@ def _poisson_ratio(plate: Section) -> float | None:
     return plate.checked("nu", number, 0.0, 0.5)
 
 
-def _outline(source: CaseText) -> tuple[Part, ...] | None:
-    """The outline; None if it is missing or wrong (reported)."""
+def _outline(
+    source: CaseText, folder: Path, radius: float | None, holes: Sequence[Hole]
+) -> tuple[tuple[Part, ...] | None, tuple[str, ...]]:
+    """The outline, None if it is missing or wrong (reported), and sentences on it."""
     section = source.section("outline", required=True)
     if not section.present:
-        return None
+        return None, ()
+    if "file" not in section:
+        for key in FILE_KEYS:
+            if key in section:
+                section.report(f"{key}: is for a file of the outline only", key)
+        for block in source.blocks("part"):
+            if "at" in block:
+                block.report("at: is for a file of the outline only; a part ends at `to`", "at")
+        return _written_outline(source, section), ()
+    for key in ("shape", "x", "y", "start"):
+        if key in section:
+            section.report(f"{key}: can't be given together with file", key)
+    origin = section.checked("origin", point_of) or 0j
+    drawn = drawn_outline(section, folder, radius, holes, origin) if radius is not None else None
+    outline, notes = drawn or (None, ())
+    for block in source.blocks("part"):
+        for key in ("name", "at"):
+            block.require(key, "; a part of a file is named by a point of it")
+        name, at = block.checked("name", string), block.checked("at", point_of)
+        if name is not None and at is not None and outline is not None and radius is not None:
+            outline = renamed(outline, block, name, at, radius)
+    return outline, notes
+
+
+def _written_outline(source: CaseText, section: Section) -> tuple[Part, ...] | None:
+    """The outline of a lug file itself; None if it is wrong (reported)."""
     shape = section.choice("shape", ("parts", "rectangle"))  # the first one is meant if none is given
     if shape == "rectangle":
         if "start" in section:

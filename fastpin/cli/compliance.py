@@ -36,6 +36,8 @@ def run(options: argparse.Namespace) -> int:
     code = write_files([(output, lambda path: write_text(path, result.compliance.to_text()))])
     if code == EXIT_OK:
         drawing = options.plot if options.plot is not None and drawn == EXIT_OK else None
+        for note in found.notes:
+            say(f"outline          {note}")
         _print_report(result, output, drawing)
     return code or drawn
 

@@ -399,12 +399,12 @@ def _check_outline(outline: Sequence[Part], radius: float) -> None:
         if abs(part.end - following.start) > same_place:
             raise InputError(
                 "outline",
-                f"is not closed: {as_toml(part.name)} ends at {_point(part.end)}, and {as_toml(following.name)} begins "
-                f"at {_point(following.start)}",
+                f"is not closed: {as_toml(part.name)} ends at {point_text(part.end)}, and {as_toml(following.name)} "
+                f"begins at {point_text(following.start)}",
             )
-    crossing = _crossing(outline)
-    if crossing is not None:
-        raise InputError("outline", f"crosses itself near {_point(crossing)}")
+    place = crossing(outline)
+    if place is not None:
+        raise InputError("outline", f"crosses itself near {point_text(place)}")
 
 
 def distances(part: Part, points: np.ndarray) -> np.ndarray:
@@ -423,7 +423,8 @@ def _pair(z: complex) -> list[float]:
     return [z.real, z.imag]
 
 
-def _point(z: complex) -> str:
+def point_text(z: complex) -> str:
+    """A point in messages."""
     return f"[{z.real:.6g}, {z.imag:.6g}]"
 
 
@@ -437,7 +438,7 @@ def _polygon(outline: Sequence[Part]) -> np.ndarray:
     return np.concatenate(pieces)
 
 
-def _crossing(outline: Sequence[Part]) -> complex | None:
+def crossing(outline: Sequence[Part]) -> complex | None:
     """A place where the outline crosses or touches itself; None if it is simple."""
     a = _polygon(outline)
     b = np.roll(a, -1)

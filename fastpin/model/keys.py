@@ -82,8 +82,8 @@ OUTCOMES = {ANY: CASE["wear"] | CASE["fatigue"] | CASE["crack"] | CASE["strength
 
 LUG: dict[str, Any] = {
     "plate": {"hole_radius": "length"},
-    "outline": _of("length", "x", "y", "start"),
-    "part": _of("length", "to", "through"),
+    "outline": _of("length", "x", "y", "start", "origin", "tolerance"),
+    "part": _of("length", "to", "through", "at"),
     "hole": _of("length", "centre", "radius"),
 }
 """The kinds of a lug file. Its loads are parts of the stress of a case."""

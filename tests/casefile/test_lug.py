@@ -44,7 +44,7 @@ def replaced(line: str, by: str) -> str:
 
 
 def test_a_file_is_read() -> None:
-    lug, title, harmonics = parse_lug(GOOD)
+    lug, title, harmonics, _ = parse_lug(GOOD)
     assert (title, harmonics, lug.nu, lug.plane, lug.hole_radius) == ("a plate", 9, 0.3, "strain", 0.01)
     assert lug.outline == rectangle((-0.03, 0.03), (-0.02, 0.05))
     assert lug.supports == {"top": "both"}
@@ -53,7 +53,8 @@ def test_a_file_is_read() -> None:
 
 
 def test_the_example_is_a_lug_with_a_round_end() -> None:
-    lug, title, harmonics = parse_lug(LUG_EXAMPLE)
+    lug, title, harmonics, notes = parse_lug(LUG_EXAMPLE)
+    assert notes == ()
     assert title == "lug with a round end"
     assert harmonics is None
     assert lug.nu == MATERIALS["aluminium"].nu

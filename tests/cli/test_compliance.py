@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fastpin.bodies.compliance import Compliance
@@ -55,6 +56,18 @@ def test_a_file_a_figure_and_a_report(lug, monkeypatch):
     ]  # fmt: skip
     assert out.endswith("wrote small.json and small.svg\n")
     assert err == ""
+
+
+@pytest.mark.gate
+def test_the_report_says_what_became_an_arc(lug):
+    angles = np.linspace(0.0, 2.0 * np.pi, 41)[:-1]
+    Path("edge.csv").write_text("".join(f"{5 * np.cos(t)},{5 * np.sin(t)}\n" for t in angles), encoding="utf-8")
+    start, stop = TEXT.index("shape"), TEXT.index("[[support]]")
+    text = TEXT[:start] + 'file = "edge.csv"\n' + TEXT[stop:].split("[[load]]")[0] + "[solve]\nharmonics = 4\n"
+    lug.write_text(text.replace('"top"', '"side 1"'), encoding="utf-8")
+    out = said("compliance", lug).out.splitlines()
+    assert out[0] == "outline          40 lines and arcs became 2 parts"
+    assert sum("an arc through" in line and "radius 5 about [0, 0]" in line for line in out) == 2
 
 
 @pytest.mark.gate

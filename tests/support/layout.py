@@ -79,6 +79,7 @@ HOMES = {
     "shtab": ("cli",),
     "aiohttp": ("live",),
     "segno": ("live",),
+    "ezdxf": ("lugs",),
 }
 """Packages that only some folders may import."""
 
@@ -88,7 +89,7 @@ PRINTS = "cli/terminal.py"
 OUTPUTS = ("assess", "report", "figures", "pages", "live", "cli")
 """Folders that show numbers to people. Their units come from ``units``, with the thickness of a problem."""
 
-OPTIONAL = ("xarray", "pandas", "pylife", "distributed", "shtab", "typst")
+OPTIONAL = ("ezdxf", "xarray", "pandas", "pylife", "distributed", "shtab", "typst")
 """Packages that may be missing. They are imported inside functions."""
 
 BY_NAME = ("import_module", "__import__", "Later")

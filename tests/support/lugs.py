@@ -48,3 +48,11 @@ def edge_stress(response: plates.Response, kolosov: float, angles: np.ndarray, c
     waves = np.exp(1j * np.multiply.outer(angles, order))
     potential = waves @ (2.0 * (order + 1.0) * moved - given) / (kolosov + 1.0)
     return np.asarray(4.0 * potential.real + (waves @ given).real)
+
+
+def mesh_edge(chords: int, side: int = 30) -> np.ndarray:
+    """Points on the edge of a lug 4.4 wide and 10 high, counter-clockwise from the start of its round end."""
+    nose = 2.2 * np.exp(1j * np.linspace(-np.pi, 0.0, chords + 1))
+    up = 10j * np.linspace(0.0, 1.0, side + 1)
+    across = np.linspace(2.2, -2.2, 13) + 10j
+    return np.concatenate([nose[:-1], 2.2 + up[:-1], across[:-1], -2.2 + up[:0:-1]])
