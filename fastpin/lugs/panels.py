@@ -71,9 +71,12 @@ class Boundary:
         The stress is singular where a support or load changes, and at held corners. It vanishes at free convex corners:
         with 16 halvings elsewhere, 5 of them leave 4e-10 of the matrix there, and 1e-8 of the stress near by. At a
         re-entrant corner it is the more singular the more the outline turns: 8, 10 and 15 halvings at 20, 45 and 90 deg
-        leave 1e-8 of the matrix. Where the outline turns by a small angle, as in a polyline, none leave 3e-7.
+        leave 1e-8 of the matrix. Where the outline turns by a small angle, as in a polyline, none leave 3e-7. None are
+        needed at the square ends of a straight edge that slides: it mirrors the plate, and the edge goes on beyond it.
         """
         before, after, turn = self.parts[place - 1], self.parts[place], self._turn(place)
+        if abs(turn - math.pi / 2) < 1e-6 and self._is_mirrored(place):
+            return 0
         is_corner, is_free = abs(turn) > 1e-6, self.free[place - 1] and self.free[place]
         if self.marks[place - 1] != self.marks[place] or (is_corner and not is_free):
             return most
@@ -93,6 +96,17 @@ class Boundary:
         """
         turn, same = self._turn(place), self.free[place - 1] == self.free[place]
         return turn < -LEAST_TURN or not (same or (turn > math.pi / 2 - 1e-6 and self._slides(place)))
+
+    def _is_mirrored(self, place: int) -> bool:
+        """Whether one or both parts at a corner are straight and slide, and the other one is free of loads."""
+        both = [(self.parts[k], *self.marks[k]) for k in (place - 1, place)]
+        held = [(part, part.end - part.start, hold) for part, hold, _ in both if hold is not None]
+        slide = [
+            part.circle is None
+            and (hold == "normal" or (hold != "both" and min(abs(along.real), abs(along.imag)) < TOUCHING))
+            for part, along, hold in held
+        ]
+        return bool(held) and all(slide) and not any(loads for *_, loads in both)
 
     def _slides(self, place: int) -> bool:
         return "both" not in (self.marks[place - 1][0], self.marks[place][0])

@@ -11,6 +11,7 @@ from fastpin.lugs import panels, plates
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad, rectangle
 from fastpin.lugs.panels import Edges, Fineness
 from fastpin.lugs.plates import COARSE, KEPT, hole_compliance, plate_compliance, respond
+from fastpin.lugs.several_holes import holes_in_infinite_plate
 from tests.support.lugs import disc, edge_stress, make_coarse, make_rough, plate
 from tests.support.ring_compliance import block, held_ring_matrix
 from tests.support.tiers import for_gate, gate, some_survey
@@ -280,10 +281,52 @@ def test_hoop_stress_of_holes_in_outlines(fields, angles, expected):
     """Another method, of other nodes, gave the numbers: docs/compliance.md. A pin presses with -sin(theta)/pi."""
     lug = plate(plane="stress", **fields)
     order = 24 if lug.floats else 16
-    response = respond(lug, order, plates.FINE, nothing)
-    column, scale = (2 + 4 * order, 1.0) if lug.floats else (3, -1.0 / math.pi)
-    found = scale * edge_stress(response, lug.kolosov, np.radians(angles), column)
-    assert found == pytest.approx(np.array(expected), abs=5e-8)
+    moved = respond(lug, order, plates.FINE, nothing).projected()
+    given = np.zeros(2 + 4 * order)
+    given[3] = 0.0 if lug.floats else -1.0 / math.pi
+    column = moved[:, -1] if lug.floats else moved[:, : given.size] @ given
+    assert edge_stress(column, given, lug.kolosov, angles) == pytest.approx(np.array(expected), abs=5e-8)
+
+
+@pytest.mark.gate
+def test_half_of_a_plate_with_two_pins_between_sliding_edges():
+    """A straight edge with `hold` "normal" mirrors the plate: two equal pins, and a bolt hole between them."""
+    sides = {"bottom": "y", "top": "y", "right": "normal"}
+    hole, bolt = Hole("other", -5.0, 1.0), (Hole("upper", 3j, 0.7), Hole("mirrored", -5.0 + 3j, 0.7))
+    load = (PartLoad("syy", ("upper", "mirrored"), normal=1.0),)
+    half = plate((-2.5, 3.0), (-3.0, 5.0), supports={**sides, "left": "normal"}, holes=bolt[:1], loads=(
+        PartLoad("syy", ("upper",), normal=1.0),))  # fmt: skip
+    whole = plate((-8.0, 3.0), (-3.0, 5.0), supports={**sides, "left": "normal"}, holes=(hole, *bolt), loads=load)
+    one, both = respond(half, 6, plates.FINE, nothing), respond(whole, 6, plates.FINE, nothing, ["other"])
+    each, upwards = 26, [3, 4]  # r sin and theta cos: the mirror leaves them
+    expected = both.projected()[:each][:, upwards] + both.projected()[:each][:, [each + k for k in upwards]]
+    assert one.edges.z.size < 0.65 * both.edges.z.size
+    assert np.abs(one.projected()[:, upwards] - expected).max() < 2e-8 * np.abs(expected).max()
+    assert np.abs(one.projected()[:, -1] - both.projected()[:each, -1]).max() < 2e-8
+
+
+@pytest.mark.gate
+def test_a_row_of_holes_is_a_pitch_between_sliding_edges():
+    """Rows of 7 and 15 holes in the infinite plate, extrapolated; 3.2411 and 2.1392 are those of an endless row.
+
+    The pitch is two diameters. The temperature moves the supports: without it the row can't contract.
+    """
+    half, load = 2.0, (PartLoad("syy", ("top",), normal=1.0),)
+    sides = {"left": "normal", "right": "normal", "bottom": "y"}
+    lug = plate((-half, half), (-10.0, 10.0), plane="stress", supports=sides, loads=load)
+    moved = respond(lug, 16, plates.FINE, nothing).with_temperature()
+    strain = 2.0 * (1.0 + lug.nu)  # the stress of supports that move by -z
+    across, along = moved[:, -2] + lug.nu / strain * moved[:, -1], -moved[:, -1] / strain
+    free = np.zeros(len(moved))
+    found = [edge_stress(across, free, lug.kolosov, [0]), edge_stress(along, free, lug.kolosov, [90])]
+    assert np.ravel(found) == pytest.approx([3.2411, 2.1392], abs=1e-4)
+    rows = []
+    for count in (7, 15):
+        centres = np.roll(2.0 * half * (np.arange(count) - count // 2.0), -(count // 2)).astype(complex)
+        made = holes_in_infinite_plate(lug.kolosov, centres, 6)
+        columns = [(made.column("syy", 0), 0), (made.column("sxx", 0), 90)]
+        rows.append([float(edge_stress(c, np.zeros(26), lug.kolosov, [angle])[0]) for c, angle in columns])
+    assert rows[1] + (np.array(rows[1]) - rows[0]) * 7 / 8 == pytest.approx(np.ravel(found), abs=5e-3)
 
 
 @pytest.mark.gate

@@ -1,5 +1,6 @@
 """Finite plates for tests."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -39,15 +40,13 @@ def make_coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plates, "COARSE", Fineness(6, 6))
 
 
-def edge_stress(response: plates.Response, kolosov: float, angles: np.ndarray, column: int) -> np.ndarray:
-    """Hoop stress of the hole at some angles, rad, under a unit of one column of a response."""
-    size = response.t.shape[2] - len(response.loads)
-    moved = complex_coefficients(response.projected()[:, column])
-    given = complex_coefficients(np.eye(size)[column]) if column < size else np.zeros_like(moved)
-    order = np.arange(-(len(moved) // 2), len(moved) // 2 + 1)
-    waves = np.exp(1j * np.multiply.outer(angles, order))
-    potential = waves @ (2.0 * (order + 1.0) * moved - given) / (kolosov + 1.0)
-    return np.asarray(4.0 * potential.real + (waves @ given).real)
+def edge_stress(moved: np.ndarray, given: np.ndarray, kolosov: float, degrees: Sequence[float]) -> np.ndarray:
+    """Hoop stress of the hole at some angles, from the coefficients of its displacement G v/R and of its traction."""
+    one, other = complex_coefficients(moved), complex_coefficients(given)
+    order = np.arange(-(len(one) // 2), len(one) // 2 + 1)
+    waves = np.exp(1j * np.multiply.outer(np.radians(degrees), order))
+    potential = waves @ (2.0 * (order + 1.0) * one - other) / (kolosov + 1.0)
+    return np.asarray(4.0 * potential.real + (waves @ other).real)
 
 
 def mesh_edge(chords: int, side: int = 30) -> np.ndarray:
