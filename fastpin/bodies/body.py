@@ -111,15 +111,17 @@ class Uniform(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A part of the drawing of a body: a filled circle, a filled square, or strokes round a rim.
+    """A part of the drawing of a body: a filled circle, square or outline, or strokes round a rim.
 
-    `kind` is "circle", "square", "strokes" or "leaning strokes". `size` is the radius, or half the side, over R. `part`
-    tells the colours: "lug", "bush" or "bore".
+    `kind` is "circle", "square", "outline", "strokes" or "leaning strokes". `size` is the radius, or half the side,
+    over R, and of an outline that of its hole. `part` tells the colours: "lug", "bush" or "bore". An outline has its
+    `plate`, a :class:`fastpin.lugs.Lug`.
     """
 
     kind: str
     size: float
     part: str
+    plate: Any = None
 
 
 MOST_DRY = 1.2

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fastpin.bodies.body import Harmonics, InWords, PlateBody, Projected, Remote, Rim, Table
+from fastpin.bodies.body import Harmonics, InWords, PlateBody, Projected, Remote, Rim, Shape, Table
 from fastpin.bodies.walls import Displacements, PlateWalls, Wall
 from fastpin.errors import InputError, printable
 from fastpin.kernels import fourier
@@ -391,6 +391,13 @@ class Compliance(PlateBody):
     @property
     def has_inside(self) -> bool:
         return bool(self.outline)
+
+    def drawing(self, rim: Rim) -> list[Shape]:
+        if not self.outline:
+            return super().drawing(rim)
+        from fastpin import lugs
+
+        return [Shape("outline", rim.ratio, "lug", lugs.lug_of(self))]
 
     @property
     def rims(self) -> tuple[np.ndarray, list[str]]:

@@ -43,8 +43,9 @@ LARGEST_GAP = 0.7 * GAP
 ROUND = np.linspace(-math.pi, math.pi, 721)
 """Angles at which rims that are not round are drawn, rad."""
 
-LONG, SHORT = 1.45, 0.55
-"""Lengths of the arrow of a force and of a remote stress, in radii of the hole."""
+LONG, SHORT, LARGE = 1.45, 0.55, 14.0
+"""Lengths of the arrow of a force and of a remote stress, in radii of the hole, and the height of a plate from which on
+arrows of forces grow with the plate."""
 
 ALLOY = "#E8EAED"
 """Shade of the plate."""
@@ -73,7 +74,7 @@ HOLD_WORDS = {"both": "held", "x": "held along x", "y": "held along y", "normal"
 """Words of the legend for supports."""
 
 ARROWS = 5
-"""Arrows of a load on each part."""
+"""Arrows of a load on each part; a short part has one."""
 
 LOAD_ARROW = 0.08
 """Length of the longest arrow of a load, in parts of the plate's extent."""
@@ -82,13 +83,14 @@ LOAD_ARROW = 0.08
 class Scale(NamedTuple):
     """What the arrows of a sketch have in common.
 
-    Half the size of the drawn plate, whether arrows of shear lie along its sides, the force of a long arrow, and the
-    side of the words on Q: 1 above the hole, -1 below it, where P does not point.
+    Half the size of the drawn plate, whether arrows of shear lie along its sides, the force of a long arrow and its
+    length, and the side of the words on Q: 1 above the hole, -1 below it, where P does not point.
     """
 
     half: float
     sheared: bool
     force: float
+    long: float
     beside: float
 
 
@@ -161,7 +163,12 @@ def draw_sketch(
     panel.set_aspect("equal")
     panel.set_axis_off()
     shapes = problem.plate_body.drawing(problem.joint.hole)
-    outside = float(shapes[0].size)
+    outside, supports = float(shapes[0].size), list[Line2D]()
+    low, high = -outside * (1.0 + 1.0j), outside * (1.0 + 1.0j)
+    stresses = {name: span for name, span in ranges.items() if LOAD_KIND[name] == "traction"}
+    if shapes[0].plate is not None:
+        low, high, supports = _draw_plate(panel, shapes[0], problem, stresses)
+        outside, ranges = -low.imag, {name: span for name, span in ranges.items() if name not in stresses}
     for shape in shapes:
         _draw_shape(panel, shape)
     _draw_hole_and_pin(panel, problem, ranges)
@@ -169,16 +176,17 @@ def draw_sketch(
         _draw_contact(panel, state)
     force = largest or max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
     beside = -1.0 if ranges.get("P", (0.0, 0.0))[0] < 0.0 else 1.0
-    _draw_loads(panel, problem, ranges, Scale(outside, "sxy" in ranges, force, beside))
-    room = 1.25 if any(LOAD_KIND[name] not in ("force", "moment") for name in ranges) else 0.15
-    panel.set_xlim(-outside - room, outside + room)
-    panel.set_ylim(-outside - room, outside + room)
-    if state is not None and state.in_contact:
-        statuses = dict.fromkeys([*([STICK] if state.stick else []), *(int(sign) for *_, sign in state.slip_zones)])
-        looks = dict.fromkeys(zone_look(problem, status) for status in statuses)
-        if words:
-            sheet.legend([zone_patch(look) for look in looks], len(looks))
+    long = LONG * max((high.imag - low.imag) / LARGE, 1.0)
+    _draw_loads(panel, problem, ranges, Scale(outside, "sxy" in ranges, force, long, beside))
+    has_room = any(LOAD_KIND[name] not in ("force", "moment") for name in {**ranges, **stresses})
+    room = 1.25 * long / LONG if has_room else 0.15
+    panel.set_xlim(low.real - room, high.real + room)
+    panel.set_ylim(low.imag - room, high.imag + room)
     if words:
+        zones = [STICK][: len(state.stick)] + [int(zone[2]) for zone in state.slip_zones] if state is not None else []
+        looks = dict.fromkeys(zone_look(problem, status) for status in dict.fromkeys(zones))
+        entries = [*(zone_patch(look) for look in looks), *supports]
+        sheet.legend(entries, min(len(entries), 3))
         exaggerated = ["clearance"] * (problem.clearance > 0.0) + ["initial gap"] * bool(problem.gap)
         note = f"{' and '.join(exaggerated)} exaggerated" if exaggerated else ""
         heading = f"load point {point_text(state)}" if state is not None else ""
@@ -194,13 +202,54 @@ def _draw_shape(panel: Axes, shape: Shape, centre: complex = 0j, zorder: float =
         panel.add_patch(Circle((centre.real, centre.imag), size, zorder=zorder, **PARTS[shape.part]))
     elif shape.kind == "square":  # The plate goes on: its cut has no line.
         panel.add_patch(Rectangle((-size, -size), 2.0 * size, 2.0 * size, facecolor=ALLOY, linewidth=0.0))
-    else:
+    elif shape.kind != "outline":
         # Leaning strokes stand close, upright ones apart.
         leans, turn = shape.kind == "leaning strokes", np.linspace(0.0, 2.0 * math.pi, 73)[:-1]
         for angle in turn if leans else turn[::2]:
             begin = size * np.exp(1j * angle)
             end = (1.06 if leans else 1.03) * size * np.exp(1j * (angle + (0.05 if leans else 0.0)))
             panel.plot([begin.real, end.real], [begin.imag, end.imag], color="0.35", linewidth=0.7)
+
+
+def _draw_plate(
+    panel: Axes, shape: Shape, problem: Problem, stresses: Mapping[str, LoadRange]
+) -> tuple[complex, complex, list[Line2D]]:
+    """Draw a plate of any outline, its supports and its loads with their ranges.
+
+    Returns the lowest and highest x and y that are shown, and the entries of the legend.
+    """
+    lug: Lug = shape.plate
+    factor, entries = shape.size / lug.hole_radius, {}
+    z = factor * np.concatenate([part.at(np.linspace(0.0, 1.0, 33)) for part in lug.outline])
+    panel.add_patch(Polygon(np.column_stack([z.real, z.imag]), zorder=0.5, **PARTS["lug"]))
+    for hole in lug.holes:
+        centre = factor * hole.centre
+        panel.add_patch(Circle((centre.real, centre.imag), factor * hole.radius, zorder=0.6, **PARTS["bore"]))
+    for part in lug.edges:
+        if part.name in lug.supports:
+            hold = lug.supports[part.name]
+            z_held, style = factor * part.at(np.linspace(0.0, 1.0, 33)), _hold_line(hold)
+            panel.plot(z_held.real, z_held.imag, zorder=2, **style)
+            entries[hold] = Line2D([], [], label=HOLD_WORDS[hold], **style)
+    for load in lug.loads:
+        if load.name in stresses:
+            span = stresses[load.name]
+            _draw_load(
+                panel,
+                lug,
+                load,
+                factor * (-1.0 if span[1] <= 0.0 else 1.0),
+                STRESS,
+                range_text(problem, load.name, span),
+            )
+    low, high = complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())
+    return low, high, [*entries.values()]
+
+
+def _hold_line(hold: str) -> dict[str, Any]:
+    """The look of a support. Dashes tell supports apart in grey."""
+    place = list(HOLD_WORDS).index(hold)
+    return line(place, place, 4.0)
 
 
 def _draw_hole_and_pin(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange]) -> None:
@@ -286,7 +335,7 @@ def _arrow(panel: Axes, tail: complex, head: complex, span: LoadRange, colour: s
 
 def _draw_force(panel: Axes, name: str, span: LoadRange, words: str, scale: Scale) -> None:
     """Draw a force on the pin: from its centre, through it if the force changes its sign."""
-    length = LONG * max(_size(span) / scale.force, 0.35)  # a shorter arrow has no shaft
+    length = scale.long * max(_size(span) / scale.force, 0.35)  # a shorter arrow has no shaft
     along = -1j if name == "P" else 1.0
     both = span[0] < 0.0 < span[1]
     if span[1] <= 0.0:
@@ -341,15 +390,16 @@ def _draw(look: Look, lug: Lug) -> Sheet:
     for part in (*lug.contact_edge, *lug.edges):
         hold = lug.supports.get(part.name) if part.name else None
         place = 0 if hold is None else 1 + list(HOLD_WORDS).index(hold)
-        kinds[place] = ("free", line(5, 0, 1.4)) if hold is None else (HOLD_WORDS[hold], line(place - 1, 0, 4.0))
+        kinds[place] = ("free", line(5, 0, 1.4)) if hold is None else (HOLD_WORDS[hold], _hold_line(hold))
         z = 1e3 * part.at(np.linspace(0.0, 1.0, 61))
         # Snapped to pixels, straight parts would not meet the arcs.
         panel.plot(z.real, z.imag, **kinds[place][1], zorder=3 if hold else 2, snap=False)
     _write_names(panel, lug)
     for load in lug.loads:
-        _draw_load(panel, lug, load)
+        colour = COLOURS[2 + [each.name for each in lug.loads].index(load.name) % 3]
+        _draw_load(panel, lug, load, 1e3, colour, load.name)
     panel.set_aspect("equal")
-    panel.margins(0.12)
+    panel.margins(0.14)
     panel.set_xlabel(quantity("x", "mm"))
     panel.set_ylabel(quantity("y", "mm"))
     entries = [kinds[place] for place in sorted(kinds)]
@@ -359,8 +409,8 @@ def _draw(look: Look, lug: Lug) -> Sheet:
 
 
 def _write_names(panel: Axes, lug: Lug) -> None:
-    """Write the names beside the parts, inside the plate, and in the holes."""
-    for part in lug.outline:
+    """Write the names inside the plate, each beside the longest of its parts, and in the holes."""
+    for part in {part.name: part for part in sorted(lug.outline, key=lambda part: part.length)}.values():
         middle, inwards = _at(part, np.array([0.5]))
         place = 1e3 * (middle[0] + 0.04 * lug.extent * inwards[0])
         rotation = 90.0 if abs(inwards[0].real) > abs(inwards[0].imag) else 0.0
@@ -375,20 +425,26 @@ def _at(part: Part, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return part.at(share), 1j * part.direction(share)
 
 
-def _draw_load(panel: Axes, lug: Lug, load: PartLoad) -> None:
-    colour = COLOURS[2 + [each.name for each in lug.loads].index(load.name) % 3]
+def _draw_load(panel: Axes, lug: Lug, load: PartLoad, factor: float, colour: str, words: str) -> None:
+    """Draw a load as arrows beside its parts, and its words at the last one. A negative `factor` turns the arrows."""
     longest = max(abs(complex(load.x, load.y)) + abs(load.normal), 1e-300)
+    end = 0j
     for part in lug.edges:
         if part.name not in load.parts:
             continue
-        points, inwards = _at(part, (np.arange(ARROWS) + 0.5) / ARROWS)
+        count = ARROWS if part.length > 0.2 * lug.extent else 1
+        points, inwards = _at(part, (np.arange(count) + 0.5) / count)
         points = points - 0.2 * LOAD_ARROW * lug.extent * inwards  # beside the line of the edge
         arrows = (complex(load.x, load.y) - load.normal * inwards) * LOAD_ARROW * lug.extent / longest
+        arrows *= math.copysign(1.0, factor)
         outwards = (np.conj(arrows) * inwards).real < 0.0
         tails = np.where(outwards, points, points - arrows)
-        for tail, arrow in zip(1e3 * tails, 1e3 * arrows, strict=True):
+        for tail, arrow in zip(abs(factor) * tails, abs(factor) * arrows, strict=True):
             head = tail + arrow
             style: Any = {"arrowstyle": "->", "color": colour, "linewidth": 1.0}
-            panel.annotate("", xy=(head.real, head.imag), xytext=(tail.real, tail.imag), arrowprops=style)
-        end = 1e3 * (tails + arrows)[-1] if outwards[-1] else 1e3 * tails[-1]
-        panel.text(end.real, end.imag, f" {load.name}", color=colour, fontsize=8.0, parse_math=False)
+            panel.annotate(
+                "", xy=(head.real, head.imag), xytext=(tail.real, tail.imag), arrowprops=style, annotation_clip=True
+            )
+        outer = np.where(outwards, tails + arrows, tails) - 0.04 * lug.extent * inwards
+        end = abs(factor) * outer[count // 2]
+    panel.text(end.real, end.imag, words, color=colour, fontsize=8.0, ha="center", va="center", parse_math=False)

@@ -5,14 +5,18 @@ import dataclasses
 import numpy as np
 import pytest
 from matplotlib.collections import PolyCollection
-from matplotlib.patches import Circle, FancyArrowPatch, Rectangle, Wedge
+from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle, Wedge
 
-from fastpin import MATERIALS, Case, InputError, LoadHistory, MaterialPair, Problem, figures
+from fastpin import MATERIALS, Case, InputError, LoadHistory, Material, MaterialPair, Problem, figures
 from fastpin.bodies import Bushing, Ring, Tube
+from fastpin.figures.sketch import ARROWS
 from fastpin.figures.stick_slip import BOTH_WAYS, LOOKS, MOST_COLUMNS, columns_of, zone_boxes
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
+from fastpin.lugs.outline import Hole, PartLoad, rectangle
+from fastpin.lugs.plates import plate_compliance
 from fastpin.states.cycles import Cycle
 from tests.support.drawing import legend_words, plain
+from tests.support.lugs import make_coarse, plate
 from tests.support.samples import PAIR, sample_result, with_values
 
 # -- the map of stick and slip ------------------------------------------------------------------------------------
@@ -219,6 +223,28 @@ def test_remote_stresses_stand_at_the_sides_of_the_plate():
     pushed = [arrow._posA_posB for arrow in arrows(panel)[2:8]]
     assert all(abs(tail[0]) > abs(head[0]) > 2.5 for tail, head in pushed)  # compression points inwards
     assert len(arrows(panel)) == 2 + 6 + 4
+
+
+@pytest.mark.gate
+def test_a_sketch_of_a_plate_of_any_outline_shows_its_supports_and_loads(monkeypatch):
+    make_coarse(monkeypatch)
+    load = PartLoad("syy", ("top",), normal=1.0)
+    lug = plate(hole_radius=12e-3, plane="stress", outline=rectangle((-0.03, 0.03), (-0.04, 0.06)), loads=(load,),
+                supports={"bottom": "both", "bolt": "normal"}, holes=(Hole("bolt", 0.035j, 4e-3),))  # fmt: skip
+    body = plate_compliance(lug, 6).compliance
+    for plate_body, size in ((body, 12e-3), (Bushing(MATERIALS["steel"], 12e-3, 1e-5, body), 10e-3)):
+        pair = MaterialPair(MATERIALS["steel"], Material(7e10, 0.3), plane="stress")
+        problem = Problem(pair, size, 20e-6, 0.3, plate_body=plate_body)
+        figure = figures.plot_sketch(problem, history=LoadHistory([{"P": 1e6, "syy": 3e7}]))
+        (panel,) = figure.axes
+        assert [text for text in words(panel) if text] == ["syy = 30 MPa", "P = 1 MN/m"]
+        assert words(panel).count("") == ARROWS
+        outline = next(patch for patch in panel.patches if isinstance(patch, Polygon))
+        assert np.abs(outline.get_xy()).max(axis=0) == pytest.approx([0.03 / size, 0.06 / size])
+        circles = [patch.radius for patch in panel.patches if isinstance(patch, Circle)]
+        assert 4e-3 / size == pytest.approx(circles[0])
+        assert legend_words(figure) == ["held", "held along the normal"]
+        assert panel.get_ylim()[0] < -0.04 / size < 0.06 / size < panel.get_ylim()[1]
 
 
 def test_a_sketch_needs_a_joint_and_may_stand_in_given_axes():
