@@ -338,8 +338,12 @@ class PlateBody(BodyBase):
         """Points on the edges of a plate of any outline, in radii of its own hole, and the names of these edges."""
         return np.zeros(0, dtype=complex), []
 
+    def net_section(self, radius: float) -> float:
+        """Width W - D that carries the force of the pin beside a hole of this radius, m; infinite if there is none."""
+        return 2.0 * (self.outer_radius - radius)
+
     def looked_at(self, radius: float, length: InWords) -> str:
-        """Where alone a largest stress is looked for, in words; empty if everywhere. `radius` is that of its hole, m."""
+        """Where alone a largest stress is looked for, in words; empty if everywhere. `radius` is of its hole, m."""
         return ""
 
     @property

@@ -399,6 +399,9 @@ class Compliance(PlateBody):
 
         return [Shape("outline", rim.ratio, "lug", lugs.lug_of(self))]
 
+    def net_section(self, radius: float) -> float:
+        return float(json.loads(self.outline or "{}").get("net_section") or math.inf)
+
     @property
     def rims(self) -> tuple[np.ndarray, list[str]]:
         return self._inside.rims if self.outline else super().rims

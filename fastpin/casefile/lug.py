@@ -24,7 +24,7 @@ LUG_EXAMPLE = Path(__file__).with_name("lug.toml").read_text(encoding="utf-8")
 """A commented lug file: a lug with a round end."""
 
 LUG_KEYS: dict[str, tuple[str, ...]] = {
-    "plate": ("material", "nu", "plane", "hole_radius"),
+    "plate": ("material", "nu", "plane", "hole_radius", "net_section"),
     "outline": ("shape", "x", "y", "start", *FILE_KEYS),
     "part": ("name", "to", "through", "at"),
     "hole": ("name", "centre", "radius"),
@@ -90,6 +90,7 @@ def _lug_file(source: CaseText, folder: Path) -> LugFile | None:
     plate = source.section("plate", required=True)
     nu, plane = _poisson_ratio(plate), plate.choice("plane", PLANES)
     radius = plate.checked("hole_radius", number, LEAST_RADIUS, MOST_RADIUS)
+    width = plate.checked("net_section", positive)
     if plate.present:
         plate.require("hole_radius")
     holes = [_hole(section) for section in source.blocks("hole")]
@@ -103,7 +104,7 @@ def _lug_file(source: CaseText, folder: Path) -> LugFile | None:
         return None
     given = [load for load in loads if load is not None], [hole for hole in holes if hole is not None]
     try:
-        lug = Lug(nu, plane, radius, outline, supports, tuple(given[0]), tuple(given[1]))  # type: ignore[arg-type]
+        lug = Lug(nu, plane, radius, outline, supports, *given, net_section=width)  # type: ignore[arg-type]
     except InputError as error:
         places = {"holes": ("hole",), "radius": ("hole",), "hole_radius": ("plate", "hole_radius")}
         section, *key = places.get(error.field, (error.field,))

@@ -221,6 +221,8 @@ class Lug:
         Further holes.
     floats : bool
         Whether nothing holds the plate: its motion counts from the mean of its outline. It has no supports then.
+    net_section : float, optional
+        Width of the plate beside the pin's hole that carries its force, W - D, m, for the net-section stress.
 
     Raises
     ------
@@ -237,10 +239,12 @@ class Lug:
     loads: Sequence[PartLoad] = ()
     holes: tuple[Hole, ...] = ()
     floats: bool = False
+    net_section: float | None = None
 
     def __post_init__(self) -> None:
         check_fields(self, number, "nu", 0.0, 0.5)
         check_fields(self, choice, "plane", PLANES)
+        check_fields(self, positive, "net_section", optional=True)
         check_fields(self, number, "hole_radius", LEAST_RADIUS, MOST_RADIUS)
         set_fields(self, outline=tuple(instances("outline", self.outline, Part, "a list of parts")))
         set_fields(self, loads=tuple(instances("loads", self.loads, PartLoad, "a list of loads")))
@@ -305,6 +309,7 @@ class Lug:
         loads = [asdict(load) for load in self.loads]
         holes = [{"name": hole.name, "centre": _pair(hole.centre), "radius": hole.radius} for hole in self.holes]
         start = {"start": _pair(self.outline[0].start), "parts": parts}
+        start |= {} if self.net_section is None else {"net_section": self.net_section}
         return {**start, "holes": holes, "supports": dict(self.supports), "loads": loads}
 
     @classmethod
@@ -318,7 +323,8 @@ class Lug:
                 start = parts[-1].end
             loads = tuple(PartLoad(**{**load, "parts": tuple(load["parts"])}) for load in content["loads"])
             holes = tuple(Hole(hole["name"], complex(*hole["centre"]), hole["radius"]) for hole in content["holes"])
-            return cls(nu, plane, hole_radius, tuple(parts), content["supports"], loads, holes)
+            width = content.get("net_section")
+            return cls(nu, plane, hole_radius, tuple(parts), content["supports"], loads, holes, net_section=width)
         except InputError:
             raise
         except (KeyError, TypeError, ValueError, AttributeError):

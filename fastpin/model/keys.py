@@ -81,7 +81,7 @@ OUTCOMES = {ANY: CASE["wear"] | CASE["fatigue"] | CASE["crack"] | CASE["strength
 """The kinds of the outcomes of a plan, which may have keys of these sections."""
 
 LUG: dict[str, Any] = {
-    "plate": {"hole_radius": "length"},
+    "plate": _of("length", "hole_radius", "net_section"),
     "outline": _of("length", "x", "y", "start", "origin", "tolerance"),
     "part": _of("length", "to", "through", "at"),
     "hole": _of("length", "centre", "radius"),

@@ -59,9 +59,9 @@ def hoop_peak(
         gross = mean + math.copysign(radius, mean)
         bypass = open_hole_hoop(problem, np.array([sxx, syy, sxy]), angle, body)
     place = angle if closed.any() or value != 0.0 else math.nan
-    # the width W - D of the net section beside the hole of a ring; infinite for any other plate, a bush, the pin
+    # the net section beside the hole; infinite for an infinite plate, a bush and the pin
     is_own, edge = body == ("seat" if problem.joint.bush else "plate"), near_rim(problem, body) * problem.hole_radius
-    section = 2.0 * (problem.plate_body.lug.outer_radius - edge) if is_own else math.inf
+    section = problem.plate_body.lug.net_section(edge) if is_own else math.inf
     return HoopPeak(value, place, resolved, bearing, gross, bypass, value, net_stress=force / section)
 
 

@@ -125,7 +125,8 @@ class HoopPeak:
         :meth:`fastpin.State.assembly_stress`; 0 without one.
     net_stress : float
         Force on the pin over the net section, F/(W - D), Pa. W is the outer diameter of a ring, and D the diameter of
-        the ring's own hole. 0 for any other plate, for the pin, and for the bush in a ring.
+        the ring's own hole; a plate of any outline has the width W - D that its file states. 0 for any other plate, for
+        the pin, and for the bush in a ring.
 
     The ratios Kt are those of ``most_of_loads``: no load causes the stress of the assembly. They belong to this state.
     Where a contact opens or slips they change with the loads: after a larger load friction holds stresses that a small
@@ -161,7 +162,7 @@ class HoopPeak:
     def kt_net(self) -> float:
         """The largest stress of the loads over the net-section stress, as handbooks of lugs have it.
 
-        NaN without a ring or a force.
+        NaN without a net section or a force.
         """
         return self._over(self.most_of_loads, self.net_stress)
 

@@ -6,7 +6,7 @@ import pytest
 
 from fastpin.casefile.lug import LUG_EXAMPLE, LUG_KEYS, parse_lug, read_lug
 from fastpin.errors import CaseFileError, InputError
-from fastpin.lugs.outline import Hole, PartLoad, rectangle
+from fastpin.lugs.outline import Hole, Lug, PartLoad, rectangle
 from fastpin.model.materials import MATERIALS
 from tests.support.faults import faults_of
 
@@ -50,6 +50,17 @@ def test_a_file_is_read() -> None:
     assert lug.supports == {"top": "both"}
     assert lug.holes == (Hole("bolt", 0.03j, 0.004),)
     assert lug.loads == (PartLoad("syy", ("bottom", "bolt"), normal=2.0),)
+
+
+def test_the_net_section_is_kept_with_the_outline() -> None:
+    lug = parse_lug(replaced("nu = 0.3", "nu = 0.3\nnet_section = 0.04")).lug
+    assert lug.net_section == 0.04
+    assert Lug.from_document(lug.document(), lug.nu, lug.plane, lug.hole_radius) == lug
+    assert "net_section" not in parse_lug(GOOD).lug.document()
+    assert any(
+        text.startswith("net_section: must be positive, not -1")
+        for _, text in faults(replaced("nu = 0.3", "nu = 0.3\nnet_section = -1"))
+    )
 
 
 def test_the_example_is_a_lug_with_a_round_end() -> None:

@@ -1,5 +1,6 @@
 """The stress of the plate at the seat of a bush: closed forms, depths, peaks, fatigue and words."""
 
+import json
 import math
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from fastpin.report.states import hoop_line
 from fastpin.report.stress import depth_curves, field_curves, hoop_curves
 from fastpin.states.quantities import QUANTITIES, values
 from tests.support.refusals import refused
+from tests.support.ring_compliance import held_ring
 
 STEEL = Material(210e9, 0.3)
 BRONZE = Material(103e9, 0.34)
@@ -168,6 +170,11 @@ def test_the_net_section_of_a_ring():
     assert math.isnan(state.peak_hoop_stress("pin").kt_net)
     plain = solve(Problem(PAIR, R, 20e-6, 0.3), [{"P": 1e6}], nodes=101)[-1]
     assert math.isnan(plain.peak_hoop_stress().kt_net)
+    ring = held_ring(3.0, 8, PAIR.plate.nu)
+    lug = replace(ring, hole_radius=R, plane=PAIR.plane, outline=json.dumps({"net_section": 0.03}))
+    for body, width in ((lug, 0.03), (replace(lug, outline=""), math.inf)):
+        peak = solve(Problem(PAIR, R, 20e-6, 0.3, plate_body=body), [{"P": 1e6}], nodes=101)[-1].peak_hoop_stress()
+        assert peak.net_stress == pytest.approx(1e6 / width)
 
 
 def test_the_loads_are_concentrated_in_a_compressed_bush():
