@@ -342,8 +342,13 @@ class PlateBody(BodyBase):
         """Width W - D that carries the force of the pin beside a hole of this radius, m; infinite if there is none."""
         return 2.0 * (self.outer_radius - radius)
 
+    @property
+    def edge_lines(self) -> list[np.ndarray]:
+        """Lines along the edges of a plate of any outline, complex, in radii of its own hole."""
+        return []
+
     def looked_at(self, radius: float, length: InWords) -> str:
-        """Where alone a largest stress is looked for, in words; empty if everywhere. `radius` is of its hole, m."""
+        """Where alone a largest stress is looked for, in words; empty if everywhere. The hole has this `radius`, m."""
         return ""
 
     @property

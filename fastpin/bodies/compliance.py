@@ -406,6 +406,14 @@ class Compliance(PlateBody):
     def rims(self) -> tuple[np.ndarray, list[str]]:
         return self._inside.rims if self.outline else super().rims
 
+    @property
+    def edge_lines(self) -> list[np.ndarray]:
+        if not self.outline:
+            return []
+        from fastpin import lugs
+
+        return [part.at(np.linspace(0.0, 1.0, 41)) / self.hole_radius for part in lugs.lug_of(self).edges]
+
     def looked_at(self, radius: float, length: InWords) -> str:
         if not self.outline:
             return "near the hole only"

@@ -211,20 +211,21 @@ def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: st
     # The infinite stress at a point force at the pin's centre does not set the colours.
     nearest = 0.3 * radius if _has_point(state) else 0.0
     every = np.concatenate([curve[value][curve[distance] >= nearest] for curve in curves])
-    low, high = np.quantile(every, [1.0 - FARTHEST, FARTHEST])
+    low, high = np.nanquantile(every, [1.0 - FARTHEST, FARTHEST])
     factor, label = (1.0, "") if component == UTILIZATION else unit["traction"].printed.scale([low, high])
     signed = low < -0.02 * max(high, -low)
     levels = _levels(factor * low, factor * high)
-    beyond = "both" if factor * min(float(curve[value].min()) for curve in curves) < levels[0] else "max"
+    beyond = "both" if factor * min(float(np.nanmin(curve[value])) for curve in curves) < levels[0] else "max"
     for curve in curves:
         around = int(np.flatnonzero(np.diff(curve[distance]) != 0.0)[0]) + 1
-        r, theta, z = (curve[name].reshape(-1, around) for name in (distance, angle, value))
+        r, theta, z = (np.ma.masked_invalid(curve[name].reshape(-1, around)) for name in (distance, angle, value))
         x, y = (r / radius * turn(np.radians(theta - 90.0)) for turn in (np.cos, np.sin))
         norm = TwoSlopeNorm(0.0, min(levels[0], -1e-12), max(levels[-1], 1e-12)) if signed else None
         colours = panel.contourf(
             x, y, factor * z, levels=levels, norm=norm, cmap="RdBu_r" if signed else "viridis_r", extend=beyond
         )
         panel.contour(x, y, factor * z, levels=levels[:: max(1, LEVELS // 5)], colors="0.25", linewidths=0.3)
+    _draw_edges(panel, state, max(float(curve[distance].max()) for curve in curves) / radius)
     handles = _draw_contact(panel, state)
     bar = sheet.figure.colorbar(colours, ax=panel, shrink=0.85, aspect=30)
     bar.set_label(quantity(FIELDS[component], label))
@@ -235,6 +236,20 @@ def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: st
     sheet.head(look.title, heading, caption=caption(state.problem, [state]))
     sheet.legend(handles, max(len(handles), 1))
     return sheet
+
+
+def _draw_edges(panel: Axes, state: State, most: float) -> None:
+    """Draw the edges of a plate of any outline up to a radius, and leave out what is beyond them."""
+    edges = [(state.problem.joint.bush or 1.0) * edge for edge in state.problem.plate_body.lug.edge_lines]
+    for edge in edges:
+        seen = np.where(np.abs(edge) <= most, edge, math.nan)
+        panel.plot(seen.real, seen.imag, color="0.2", linewidth=0.6)
+    if edges:
+        every = np.concatenate(edges)
+        ends = [(max(part.min(), -most), min(part.max(), most)) for part in (every.real, every.imag)]
+        half = 0.52 * max(high - low for low, high in ends)
+        x, y = (0.5 * (low + high) for low, high in ends)
+        panel.set(xlim=(x - half, x + half), ylim=(y - half, y + half))
 
 
 def _levels(low: float, high: float) -> np.ndarray:

@@ -44,7 +44,7 @@ LEAST_PANEL = 0.004
 MOST_POINTS = 5_000
 """Points whose stresses are kept for other states, at most."""
 
-BLOCK = 200
+BLOCK = 50
 """Points whose integrals are taken at once."""
 
 
@@ -161,17 +161,18 @@ class PlateField:
 
     def _kernels(self, z: np.ndarray) -> np.ndarray:
         """Cauchy's three kernels between points (m,) and the nodes of other edges, over 2 pi i, shape (3, m, nodes)."""
-        edges = self.edges
+        edges, first = self.edges, int(np.argmax(self._outer))  # the nodes of the hole come first
 
         def kernels(r: np.ndarray, along: np.ndarray) -> np.ndarray:
-            return np.array([along / r, 1.0 / r, along * np.conj(r) / (r * r)])
+            inverse = 1.0 / r
+            return np.array([along * inverse, inverse, along * np.conj(r) * inverse * inverse])
 
         with np.errstate(divide="ignore", invalid="ignore"):  # a node itself comes below
-            values = kernels(edges.z - z[:, None], 1j * edges.normals) * edges.weights
-        rows, columns, sums = near_integrals(edges, np.arange(edges.part.size), z, kernels)
+            values = kernels(edges.z[first:] - z[:, None], 1j * edges.normals[first:]) * edges.weights[first:]
+        rows, columns, sums = near_integrals(edges, np.arange(edges.panel[first], edges.part.size), z, kernels)
         for value, near in zip(values, sums.transpose(1, 0, 2), strict=True):
-            value[rows, columns] = near
-        return values[:, :, self._outer] / (2j * math.pi)
+            value[rows, columns - first] = near
+        return values / (2j * math.pi)
 
 
 def _beside_hole(order: int, kolosov: float, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

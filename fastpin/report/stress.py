@@ -152,6 +152,18 @@ def _check_depth(depth: float, problem: Problem, body: points.Body) -> None:
     raise InputError("depth", f"must be above 0 and at most {wall:g} radii, the wall of the {body}, not {depth:g}")
 
 
+def _farthest(lines: Sequence[np.ndarray], theta: np.ndarray) -> np.ndarray:
+    """Distances from 0 at which rays in the directions `theta` leave all lines, complex; a little less, at least 1."""
+    found = np.ones(theta.size)
+    for line in lines:
+        a, b = (part * np.exp(-1j * theta)[:, None] for part in (line[:-1], line[1:]))
+        crossed = (a.imag * b.imag <= 0.0) & (a.imag != b.imag)
+        share = np.divide(a.imag, a.imag - b.imag, out=np.zeros(a.shape), where=crossed)
+        distance = np.where(crossed, a.real + share * (b.real - a.real), 1.0)
+        found = np.maximum(found, 0.999 * distance.max(axis=1, initial=1.0))
+    return found
+
+
 def field_curves(
     state: State, component: str = "von_mises", body: str = "both", extent: float = 2.0, fineness: int = 240
 ) -> list[Curve]:
@@ -169,6 +181,7 @@ def field_curves(
         The plate holds its bush.
     extent : float
         Outer radius of the plate's part, in units of the hole's radius; above 1, at most 100. A ring ends at its rim.
+        Beyond an outline the component is NaN.
     fineness : int
         Number of circles in each body.
 
@@ -186,20 +199,32 @@ def field_curves(
     drawn = tuple(each for each in bodies_of(state, body) if each != "seat")  # the plate has it
     if component == UTILIZATION:
         drawn = ("plate",)
-    deepest = min(outer - 1.0, points.known_depth(state.problem, "plate"))
+    lug, bush = state.problem.plate_body.lug, state.problem.joint.bush or 1.0
+    if lug.edge_lines:  # a point takes longer there
+        fineness //= 2
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
+    deepest = np.minimum(outer, bush * _farthest(lug.edge_lines, theta)) - 1.0
+    if not lug.edge_lines:
+        deepest = np.minimum(outer - 1.0, points.known_depth(state.problem, "plate"))
     for each in drawn:
         part, far = np.linspace(0.0, 1.0, fineness)[:, None], points.far_rim(state.problem, each)
         in_pin = radius * (1.0 - (far or 0.001)) * (1.0 - part) ** 2  # at a solid pin's centre the force may act
         below = radius * deepest * part**2 if each == "plate" else in_pin
-        found = state.stress(points.Points.at_depth(below, theta), each)
-        if component == UTILIZATION:
-            ratio = first_ply_failure(laminate_of(state.problem), found.in_plane).ratio
-            column = {FIELDS[component]: 1.0 / ratio.ravel()}
-        else:
-            column = unit["traction"].column(FIELDS[component], component_of(found, component).ravel())
         distance = radius + below if each == "plate" else radius - below
         places = np.broadcast_arrays(distance, np.degrees(theta) + 90.0)
+        inside = np.ones(places[0].size, dtype=bool)
+        if each == "plate":
+            inside = lug.contains((distance / (radius * bush) * np.exp(1j * theta)).ravel())
+        there = points.Points.at_depth(
+            *(np.broadcast_to(part, places[0].shape).ravel()[inside] for part in (below, theta))
+        )
+        values, found = np.full(inside.size, math.nan), state.stress(there, each)
+        if component == UTILIZATION:
+            values[inside] = 1.0 / first_ply_failure(laminate_of(state.problem), found.in_plane).ratio
+            column = {FIELDS[component]: values}
+        else:
+            values[inside] = component_of(found, component)
+            column = unit["traction"].column(FIELDS[component], values)
         columns = unit["length"].column("radius", places[0].ravel()) | {"angle [deg]": places[1].ravel()} | column
         curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
     return curves
