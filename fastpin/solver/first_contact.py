@@ -544,7 +544,7 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     square of the contact's half-width.
     """
     force = float(np.hypot(change[Q], change[P]))
-    nearest = int(np.argmin(resting.gap))
+    nearest = _nearest(system, resting)
     theta = system.grid.theta[nearest]
     gap = hole_gap(system, resting.load, theta)[0]
     half = 2.5 * _width(system, nearest)
@@ -565,9 +565,21 @@ def _steady_part(system: System, resting: Configuration, change: np.ndarray) -> 
     theta = system.grid.theta
     gap, _, curvature = hole_gap(system, resting.load, theta)
     later, _, bent = hole_gap(system, resting.load + change, theta)
-    here = max(float((gap + curvature)[np.argmin(resting.gap)]), 0.0)
+    here = max(float((gap + curvature)[_nearest(system, resting)]), 0.0)
     changed = float(np.abs(later + bent - gap - curvature).max())
     return 1.0 if changed <= STEADY * here else max(STEADY * here / changed, LEAST_PART)
+
+
+def _nearest(system: System, resting: Configuration) -> int:
+    """The node at which the resting pin touches the hole. Of several nodes it is the one where the hole bends least.
+
+    A gripped pin touches three nodes. Rounding would choose another one of them in a mirror image.
+    """
+    touching = np.flatnonzero(resting.gap - resting.gap.min() <= SLIGHT * resting.gap.max())
+    if touching.size == 1:
+        return int(touching[0])
+    gap, _, curvature = hole_gap(system, resting.load, system.grid.theta[touching])
+    return int(touching[np.argmin(gap + curvature)])
 
 
 def _width(system: System, node: int) -> float:

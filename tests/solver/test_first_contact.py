@@ -18,6 +18,7 @@ from fastpin.solver.errors import ArcError, NoEquilibriumError
 from fastpin.solver.solving import solve
 from tests.support.steps import step_by_step
 from tests.support.tiers import seeds
+from tests.survey import metamorphic
 
 BOTTOM = -0.5 * np.pi
 SOFT_PIN = MaterialPair(Material(1.0, 0.1), Material(10.0, 0.3))
@@ -68,6 +69,12 @@ def test_the_gripping_does_not_depend_on_where_the_nodes_begin(start):
     case = Problem.from_load_parameter(GRIPPED, 2.54, 0.3)
     state = solve(case, [{"sxx": -5.11, "syy": 7.13}], grid=Grid.circle(301, start))[-1]
     assert state.peak_pressure == pytest.approx(5.359, rel=2e-3)
+
+
+def test_a_pin_gripped_at_three_nodes_begins_as_its_mirror_image():
+    """Rounding chooses no node of the three: the load of the first contact, and so the dissipation, is the same."""
+    for pair in metamorphic.compare("remote", 93):
+        assert pair.difference < 1e-12
 
 
 def test_a_hole_that_grips_outside_the_arc_is_said_to():
