@@ -52,9 +52,11 @@ class Piece:
     after: np.ndarray
 
     def load_at(self, fraction: float) -> np.ndarray:
-        """The dimensionless load at a fraction of the step."""
-        if fraction == self.end:
+        """The dimensionless load at a fraction of the step. Beside an end, up to rounding, it is the load of the end."""
+        if abs(fraction - self.end) <= ROUNDED:
             return self.after.copy()
+        if abs(fraction - self.begin) <= ROUNDED:
+            return self.before.copy()
         return self.before + (fraction - self.begin) / (self.end - self.begin) * (self.after - self.before)
 
 

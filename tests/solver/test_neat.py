@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fastpin import LoadHistory, Material, MaterialPair, Problem, solve
+from fastpin.bodies import Tube
 from fastpin.model.laminate import Laminate
 from fastpin.model.loads import LOADS, P, Q
 from fastpin.model.options import ALL_ROUND
@@ -48,6 +49,15 @@ def test_a_fit_that_is_neat_up_to_rounding_behaves_as_a_neat_one(clearance):
         if one.grid == other.grid:
             np.testing.assert_allclose(one.pressure, other.pressure, atol=10.0 * abs(clearance) + 1e-9)
         assert one.peak_pressure == pytest.approx(other.peak_pressure, abs=0.02)
+
+
+@pytest.mark.parametrize("size", [0.7923076923076923, 0.8846153846153847, 0.9076923076923077])
+def test_a_stop_where_all_loads_vanish_up_to_rounding_is_the_place_of_the_cut(size):
+    hollow = Problem.from_load_parameter(UNLIKE, 0.0, 0.9, "centre", "free", pin_body=Tube(0.6))
+    result = solve(hollow, [{"sxx": size}, {"sxx": -size / 7.0}], nodes=41, between=7)
+    (stop,) = [state for state in result if state.step == 1 and state.fraction == 0.875]
+    assert not stop.in_contact
+    assert stop.load["sxx"] == 0.0
 
 
 def test_a_step_is_cut_where_all_that_presses_vanishes():
