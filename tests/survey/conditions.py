@@ -26,6 +26,7 @@ from fastpin.model.profile import InitialGap
 from fastpin.model.profile_terms import Crown, Flat, Harmonic
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
+from fastpin.solver.task import reference_force
 from fastpin.states.state import State
 
 TOLERANCE = 1e-8
@@ -38,11 +39,17 @@ POINTS, WEIGHTS = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS
 HALVINGS = 44
 """Halvings of a segment towards a logarithm at its end."""
 
+CLOSER = 3
+"""Times that an interval is divided by a hundred in search of the moment of a wrong slip."""
+
 STOPS = 101
 """Places between two states at which a driven pin may float."""
 
 RANK = 1e-8
 """Size of a further displacement by loads, in parts of the largest one, below which it is the sum of others."""
+
+NEGLIGIBLE = 1e-10
+"""Clearance, in parts of F beta*, that the solver takes for none."""
 
 LEAST_LENGTH = 1e-6
 """Least size of displacements, in parts of the clearance: below it the clearance leaves no digits."""
@@ -352,22 +359,35 @@ def check_states(states: Sequence[State], grown: Sequence[np.ndarray] | None = N
     growths = [0.0] * len(states) if grown is None else grown
     checked = [Checked(integrals, state, growth) for state, growth in zip(states, growths, strict=True)]
     found = [dict(one.conditions) for one in checked]
-    _check_gaps(checked, found)
+    left_out = negligible_clearance(states)
+    if left_out:  # nothing grips the pin without load
+        for one in checked:
+            one.room = max(one.room, 0.0)
+    _check_gaps(checked, found, left_out)
     _check_slips(checked, found)
     _check_energy_balance(checked, found)
     return found
 
 
-def _check_gaps(checked: list[Checked], found: list[dict[str, float]]) -> None:
+def negligible_clearance(states: Sequence[State]) -> float:
+    """The clearance or interference, m, that the solver takes for none; 0 where it takes all of it."""
+    problem, loads = states[0].problem, np.array([[state.load[name] for name in LOADS] for state in states])
+    least = NEGLIGIBLE * reference_force(problem, loads) * problem.surfaces.beta_star
+    clearance = abs(problem.assembled_clearance)
+    return clearance if clearance <= least and not problem.gap else 0.0
+
+
+def _check_gaps(checked: list[Checked], found: list[dict[str, float]], left_out: float) -> None:
     """Compare the gaps. Before the first contact the pin is in the middle; its later datum is fitted.
 
-    With an initial gap the pin may float beside the middle. Then it is not judged.
+    With an initial gap the pin may float beside the middle. Then it is not judged. The gaps may lack a clearance
+    `left_out`, m.
     """
     began = next((place for place, one in enumerate(checked) if one.touches), len(checked))
     if checked[0].problem.gap:
         checked, found, began = checked[began:], found[began:], 0
     for one, conditions in zip(checked[:began], found, strict=False):
-        conditions["gap"] = float(np.abs(one.gap - one.state.gap).max()) / one.length
+        conditions["gap"] = max(float(np.abs(one.gap - one.state.gap).max()) - left_out, 0.0) / one.length
     if began == len(checked):
         return
     theta = checked[0].state.theta
@@ -375,7 +395,8 @@ def _check_gaps(checked: list[Checked], found: list[dict[str, float]]) -> None:
     best = min(checked[began:], key=lambda one: one.length)
     datum = np.linalg.lstsq(columns, best.gap - best.state.gap, rcond=None)[0]
     for one, conditions in zip(checked[began:], found[began:], strict=True):
-        conditions["gap"] = float(np.abs(one.gap - columns @ datum - one.state.gap).max()) / one.length
+        off = float(np.abs(one.gap - columns @ datum - one.state.gap).max())
+        conditions["gap"] = max(off - left_out, 0.0) / one.length
 
 
 def _check_slips(checked: list[Checked], found: list[dict[str, float]]) -> None:
@@ -471,8 +492,8 @@ def check_direction(result: Result) -> tuple[float, int]:
     """Largest slip in a wrong direction in a result with many stops, in parts of the largest slip; and its step.
 
     A node may slip and stick again between two stops. So the worst step is followed once more, with stops that lie a
-    hundred times closer in the worst interval. The amount that is left there counts. A step that the solver refuses
-    with these stops is not judged.
+    hundred times closer in the worst interval, :data:`CLOSER` times. The amount that is left there counts. A step that
+    the solver refuses with these stops is not judged.
     """
     return max(_interface_direction(result, place) for place in range(len(interfaces_of(result.states))))
 
@@ -487,18 +508,28 @@ def _interface_direction(result: Result, place: int) -> tuple[float, int]:
     rounding = 8.0 * np.finfo(float).eps * max(float(np.abs(state.slip).max()) for state in states)
     if wrong[2] <= max(TOLERANCE * size, rounding):  # where all nodes stick, all changes are rounding
         return 0.0, -1
-    before, after = result.states[wrong[0] - 1], result.states[wrong[0]]
+    inside = result.states
+    for _ in range(CLOSER):
+        before, after = inside[wrong[0] - 1], inside[wrong[0]]
+        try:
+            inside = _states_between(result, before, after)
+        except FastpinError:
+            return 0.0, after.step
+        left = max(wrong_slips(interfaces_of(inside)[place]), key=lambda found: found[2], default=(0, 0, 0.0))
+        if left[2] <= 0.3 * wrong[2]:
+            return 0.0, after.step
+        wrong = left
+    return wrong[2] / size, after.step
+
+
+def _states_between(result: Result, before: State, after: State) -> Sequence[State]:
+    """The states at a hundred stops between two states. The first interval of a step begins at its first stop."""
     begin = before.fraction if before.step == after.step else 0.0
     stops = np.linspace(begin, after.fraction, 101)
     stops = stops[(stops > 0.0) & (stops < 1.0)]
-    try:
-        closer = solve(result.problem, result.history[: after.step + 1], grid=result.grid, between=list(stops))
-    except FastpinError:
-        return 0.0, after.step
+    closer = solve(result.problem, result.history[: after.step + 1], grid=result.grid, between=list(stops))
     first = stops[0] if begin == 0.0 else begin  # the rest of the first interval is as wide as the others
-    inside = [s for s in closer.states if s.step == after.step and first <= s.fraction <= after.fraction]
-    left = max((amount for _, _, amount in wrong_slips(interfaces_of(inside)[place])), default=0.0)
-    return (left / size if left > 0.3 * wrong[2] else 0.0), after.step
+    return [s for s in closer.states if s.step == after.step and first <= s.fraction <= after.fraction]
 
 
 def interfaces_of(states: Sequence[State]) -> list[Sequence[State]]:
