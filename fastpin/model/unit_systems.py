@@ -80,7 +80,7 @@ def checked_system(field: str, value: object) -> str:
     InputError
         If it is no text of three known units, one of each kind, or mixes metric and US customary units.
     """
-    if value == SI:
+    if isinstance(value, str) and value == SI:
         return SI
     words = [word.strip() for word in value.split(",")] if isinstance(value, str) else []
     known = [name for table in (*_METRIC, *_CUSTOMARY) for name in table]

@@ -52,7 +52,7 @@ class Piece:
     after: np.ndarray
 
     def load_at(self, fraction: float) -> np.ndarray:
-        """The dimensionless load at a fraction of the step. Beside an end, up to rounding, it is the load of the end."""
+        """The dimensionless load at a fraction of the step. A fraction beside an end, up to rounding, is the end."""
         if abs(fraction - self.end) <= ROUNDED:
             return self.after.copy()
         if abs(fraction - self.begin) <= ROUNDED:

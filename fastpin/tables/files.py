@@ -12,9 +12,9 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
-from fastpin.model.checks import as_toml, file_path, whole_number
+from fastpin.model.checks import as_toml, file_path, instance, whole_number
 from fastpin.model.history import Block, LoadHistory
-from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.loads import LOADS
 from fastpin.model.profile import ProfileKind
 from fastpin.model.recorded import recorded_cycles
 from fastpin.tables.columns import (
@@ -27,7 +27,7 @@ from fastpin.tables.columns import (
     named_columns,
     title_and_unit,
 )
-from fastpin.tables.load_units import IN_SI, Basis, LoadUnit, load_unit
+from fastpin.tables.load_units import IN_SI, Basis, LoadUnit, load_unit, plain_unit
 from fastpin.tables.reader import Wanted, read_table
 
 MAX_ROWS = 10_000_000
@@ -85,7 +85,7 @@ def read_corners(
         Wanted(
             find=(lambda titles: chosen_columns(titles, chosen)) if chosen else named_columns,
             places=known_places(chosen) if chosen else None,
-            unit=lambda name, unit: load_unit(name, unit, basis) if unit else basis.plain(LOAD_KIND.get(name, "")),
+            unit=lambda name, unit: load_unit(name, unit, basis),
             noun="load corners",
             most=most,
             too_many=f"more than {most:,} corners can't be read; repeat a shorter file in a case file",
@@ -127,9 +127,10 @@ def read_samples(
     CaseFileError
         See :func:`fastpin.tables.reader.read_table`.
     InputError
-        If `path`, `columns` or `skip` can't be used.
+        If `path`, `basis`, `columns` or `skip` can't be used.
     """
     place = file_path("path", path)
+    instance("basis", basis, Basis, "a Basis")
     if columns is not None and (not isinstance(columns, Mapping) or not set(columns) <= set(COLUMNS)):
         example = '{"angles": {"column": 1}, "values": {"column": "R", "unit": "um"}}'
         raise InputError("columns", f"must map angles and values to columns, such as {example}, not {as_toml(columns)}")
@@ -172,7 +173,7 @@ def _unit(name: str, unit: str, quantity: ProfileKind, basis: Basis) -> LoadUnit
             raise InputError(name, f"an angle must be in deg or rad, not {as_toml(unit)}")
         return LoadUnit(0, math.degrees(1.0)) if unit == "rad" else LoadUnit()
     if not unit:
-        return basis.plain({"gap": "displacement", "wear": "wear coefficient"}.get(quantity, ""))
+        return plain_unit({"gap": "displacement", "wear": "wear coefficient"}.get(quantity, ""), basis)
     if quantity == "friction" and unit not in ("-", "1"):
         raise InputError(name, f"friction has no unit; leave it out, not {as_toml(unit)}")
     if quantity == "wear" and unit != "1/Pa":

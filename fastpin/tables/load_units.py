@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Literal, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml
+from fastpin.model.checks import as_toml, choice, set_fields
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.synonyms import closest
-from fastpin.model.unit_systems import INCH, POUND, SI, Measure
+from fastpin.model.unit_systems import INCH, POUND, SI, Measure, checked_system
 from fastpin.model.units import measures_of
 
 
@@ -26,7 +27,12 @@ class LoadUnit(NamedTuple):
     zero: float = 0.0
 
 
-class Basis(NamedTuple):
+HOW = ("per metre", "with thickness", "dimensionless")
+"""Ways in which loads are given."""
+
+
+@dataclass(frozen=True)
+class Basis:
     """How loads are given.
 
     Attributes
@@ -37,13 +43,11 @@ class Basis(NamedTuple):
         The system of units of numbers without a unit, see :func:`fastpin.model.unit_systems.checked_system`.
     """
 
-    how: Literal["per metre", "with thickness", "dimensionless"] = "per metre"
+    how: str = "per metre"
     system: str = SI
 
-    def plain(self, kind: str) -> LoadUnit:
-        """The unit of a number without a unit."""
-        way = measures_of(self.system, self.how == "with thickness").get(kind, Measure(""))
-        return LoadUnit(way.power, way.factor)
+    def __post_init__(self) -> None:
+        set_fields(self, how=choice("how", self.how, HOW), system=checked_system("system", self.system))
 
 
 IN_SI = Basis()
@@ -170,14 +174,22 @@ def is_unit_of(load: str, name: str) -> bool:
     return name in _WITH_THICKNESS[kind] or (name in _PER_METRE[kind] and name not in _WITH_THICKNESS["force"])
 
 
+def plain_unit(kind: str, basis: Basis) -> LoadUnit:
+    """The unit of a number of a kind without a unit."""
+    way = measures_of(basis.system, basis.how == "with thickness").get(kind, Measure(""))
+    return LoadUnit(way.power, way.factor)
+
+
 def load_unit(load: str, name: str, basis: Basis) -> LoadUnit:
-    """Return a unit by its usual spelling.
+    """Return a unit by its usual spelling; an empty one is that of the basis.
 
     Raises
     ------
     InputError
         If the load can't be in this unit. The sentence lists the units. Its field is the load.
     """
+    if not name:
+        return plain_unit(LOAD_KIND.get(load, ""), basis)
     if basis.how == "dimensionless":
         words = "the loads of a problem with load_parameter have no units; leave the unit out"
         raise InputError(load, f"{words}, not {as_toml(name)}")
