@@ -51,6 +51,7 @@ NEAR = {
     "damage": ("cracks", "report", "studies"),
     "cracks": ("report", "studies", "cli"),
     "storage": ("studies", "cli", "whole"),
+    "assess": ("report", "cli", "studies", "pages"),
     "report": ("cli", "pages", "studies"),
 }
 """Folders whose files are changed, and the folders of tests that may notice it beside their own."""
