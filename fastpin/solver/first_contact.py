@@ -354,7 +354,8 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
         raise ArcError("the hole grips the pin outside the arc; give a wider one, or none")
     place = optimum.x + np.linalg.lstsq(rows[held], first[held] / size - rows[held] @ optimum.x)[0]  # to all digits
     # Opposite nodes leave the pin free across. Then it stays as near to the middle as it can.
-    across = np.r_[place[0], np.linalg.lstsq(rows[held, 1:], first[held] / size - rows[held, 0] * place[0])[0]]
+    left = first[held] / size - rows[held, 0] * place[0]
+    across = np.r_[place[0], np.linalg.lstsq(rows[held, 1:], left, rcond=SLIGHT)[0]]
     if np.all(rows @ across <= first / size + 1e-12):
         place = across
     return float(np.clip(place[0], 0.0, 1.0)), place[1:], held

@@ -87,14 +87,14 @@ class Changed:
     radius: float = 1.0
     split: int = 0
 
-    def states(self) -> list[State]:
+    def states(self, **options: Any) -> list[State]:
         """The states of the changed case at the corners of the first case."""
         history = LoadHistory.from_array(acting_loads(self.problem, self.loads))
         if self.split:
-            first = solve(self.problem, history[: self.split], grid=self.grid)
-            states = [*first, *solve(self.problem, history[self.split :], start=first)]
+            first = solve(self.problem, history[: self.split], grid=self.grid, **options)
+            states = [*first, *solve(self.problem, history[self.split :], start=first, **options)]
         else:
-            states = solve(self.problem, history, grid=self.grid).states
+            states = solve(self.problem, history, grid=self.grid, **options).states
         return [states[place] for place in self.places]
 
     def fields(self, state: State) -> Fields:
