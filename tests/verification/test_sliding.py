@@ -10,6 +10,7 @@ from fastpin.bodies import Tube
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
@@ -19,6 +20,7 @@ from fastpin.verification import closed_forms
 from tests.support.bodies import JOINTS, joint_problem
 from tests.support.checks.sliding import Sliding, solve_sliding
 from tests.support.tiers import gate
+from tests.survey import metamorphic
 
 BOTTOM = -0.5 * math.pi
 SIMILAR = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
@@ -148,6 +150,18 @@ def test_mirror_image(pair):
     assert two.pressure(-math.pi - x) == pytest.approx(one.pressure(x), abs=1e-10)
     assert two.shear(-math.pi - x) == pytest.approx(-one.shear(x), abs=1e-10)
     assert two.moment == pytest.approx(-one.moment, rel=1e-12)
+
+
+@pytest.mark.parametrize(("seed", "slip"), [(0, 1), (1, 1), (2, -1)])
+def test_any_angle(seed, slip):
+    problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.3, 0.4, "centre", "fixed")
+    load = {"P": 1.0, "Q": 0.3, "sxx": 0.05, "syy": 0.02, "sxy": 0.1}
+    changed = metamorphic.turned(np.random.default_rng(seed), problem, LoadHistory([load]).values(), Grid.circle(8))
+    moved = {name: float(changed.loads[0, LOADS.index(name)]) for name in load}
+    one, two = (solve_sliding(problem, each, slip) for each in (load, moved))
+    away = np.array(two.contact) - changed.angle - one.contact
+    assert away - 2.0 * math.pi * np.round(away / (2.0 * math.pi)) == pytest.approx([0.0, 0.0], abs=1e-11)
+    assert (two.peak_pressure, two.moment) == pytest.approx((one.peak_pressure, one.moment), rel=1e-11)
 
 
 def errors_in_terms(pair: MaterialPair, counts: tuple[int, ...], exact: int) -> tuple[list[float], list[float]]:
