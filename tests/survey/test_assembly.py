@@ -22,6 +22,8 @@ def test_stresses_of_assembly_and_loads_add_up(kind: str, many: int, part: int) 
     joints = {
         seed: joint for seed in seeds(many) if seed % 5 == part and (joint := pressed_joint(kind, seed)) is not None
     }
+    if not joints:
+        pytest.skip("none of these seeds gives a pressed joint")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         found = {seed: examine(*joint) for seed, joint in joints.items()}
