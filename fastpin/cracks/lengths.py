@@ -97,8 +97,10 @@ def _errors(lengths: np.ndarray, K: np.ndarray, pace: CrackPace) -> tuple[np.nda
     if end < x.size:
         off[end - 1 : end + 1] = _moved(x, true[1], by_others[1], end)
     else:
-        with np.errstate(invalid="ignore"):
-            off[:] = np.abs(by_others[0] - there) * weight
+        with np.errstate(invalid="ignore", divide="ignore"):
+            away = np.abs(by_others[0] / there - 1.0)
+            away[[0, -1]] = LEFT_OUT * away[[1, -2]]  # no length tells the ends, where K may nearly vanish
+            off[:] = away * there * weight
         broken = np.flatnonzero(there == 0.0)
         if broken.size:
             at = int(broken[0])

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from fastpin.cracks import Walker
 from fastpin.cracks.lengths import EXACT, drawn, refined, spline_of, step_cycles
@@ -64,6 +65,22 @@ def test_kinks_of_the_range_do_not_spoil_lives():
         own = 2e-6 + float(pace[pace > 0.0][-1]) * np.log(DENSE[1] / DENSE[0]) / steps_sum(pace)
         assert life == pytest.approx(steps_sum(pace), rel=error + own), seed
         assert error < 10.0 * EXACT, seed
+
+
+@pytest.mark.parametrize("width", [0.3, 0.8])
+@pytest.mark.parametrize("least", [0.01, 0.05])
+def test_a_life_that_is_spent_at_its_first_length_is_exact(least, width):
+    """K nearly vanishes there. The next lengths tell how far it bends in the first step."""
+
+    def K(a):
+        return 1e8 * np.sqrt(a) * (least + 1.0 - np.exp(-np.log(a / FIRST) / width)) * np.array([[1.0], [0.0]])
+
+    life, error, _, _ = life_of(K, Walker(1e-10, 8.0))
+    exact = quad(
+        lambda x: np.exp(x) / (1e-10 * (1e-6 * K(np.exp(x))[0, 0]) ** 8), np.log(FIRST), np.log(LAST), limit=500
+    )
+    assert error < EXACT
+    assert life == pytest.approx(exact[0], rel=error)
 
 
 def test_cycles_after_fracture_do_not_count():
