@@ -22,7 +22,7 @@ from fastpin.model.ply import PlyCriterion
 from fastpin.model.points import Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.strength import StrengthAssessment, checked_lengths
+from fastpin.model.strength import StrengthAssessment, check_near, checked_lengths
 from fastpin.states.state import State
 
 AROUND = 720
@@ -152,12 +152,13 @@ def joint_strength(
     Raises
     ------
     InputError
-        If neither or both kinds of lengths are given, there is no force for the curve, a length is negative, or the
-        plate is no laminate whose plies have strengths.
+        If neither or both kinds of lengths are given, there is no force for the curve, a length is negative or above
+        100 radii of the hole, or the plate is no laminate whose plies have strengths.
     """
     checks.instance("state", state, State, "a fastpin.State")
     plate = laminate_of(state.problem)
     lengths = checked_lengths(distance, tension, compression)
+    check_near(state.problem, lengths)
     force = force_on_pin(state)
     direction = float(np.angle(force)) if force else math.nan
     if "distance" in lengths:

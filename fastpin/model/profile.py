@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from fastpin.model.angles import angle_at, distinct
 from fastpin.model.checks import (
     as_toml,
     check_callable,
-    choice,
     instances,
     number,
     number_array,
@@ -181,8 +180,7 @@ class Profile:
         """
         from fastpin.tables import read_samples
 
-        kind = choice("quantity", quantity, get_args(ProfileKind))
-        return cls.samples(*read_samples(path, kind, columns=columns, skip=skip), harmonics)  # type: ignore[arg-type]
+        return cls.samples(*read_samples(path, quantity, columns=columns, skip=skip), harmonics)  # type: ignore[arg-type]
 
     @classmethod
     def of(cls, place: str, value: ProfileLike) -> Profile:

@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
-from fastpin.model.checks import as_toml, file_path, instance, whole_number
+from fastpin.model.checks import as_toml, choice, file_path, instance, whole_number
 from fastpin.model.history import Block, LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.profile import ProfileKind
@@ -127,10 +127,11 @@ def read_samples(
     CaseFileError
         See :func:`fastpin.tables.reader.read_table`.
     InputError
-        If `path`, `basis`, `columns` or `skip` can't be used.
+        If `path`, `quantity`, `basis`, `columns` or `skip` can't be used.
     """
     place = file_path("path", path)
     instance("basis", basis, Basis, "a Basis")
+    choice("quantity", quantity, get_args(ProfileKind))
     if columns is not None and (not isinstance(columns, Mapping) or not set(columns) <= set(COLUMNS)):
         example = '{"angles": {"column": 1}, "values": {"column": "R", "unit": "um"}}'
         raise InputError("columns", f"must map angles and values to columns, such as {example}, not {as_toml(columns)}")
