@@ -115,7 +115,7 @@ def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, of_kind):
 def test_all_kinds_but_that_of_cycles_show_a_life_of_wear(life):
     for name, kind in KINDS.items():
         code = 0 if "life" in kind.sources and not kind.of_laminates else 2
-        words = said("plot", life, name, "-o", f"a.{kind.ending}", code=code).out
+        words = said("plot", life, name, "-o", "a.svg", code=code).out
         shows_a_profile = "the figure shows a cycle after 60 cycles\n" in words
         assert kind.of_laminates or shows_a_profile == (kind.sources == ("result", "life")), name
 
