@@ -14,6 +14,7 @@ Tests set no time limits. A process that runs longer than :data:`LONGEST` is kil
 
 import contextlib
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -28,6 +29,15 @@ ROOT = Path(__file__).resolve().parents[2]
 
 LONGEST = 180.0
 """Longest life of a child process, s. On a busy machine a child of a second has taken half a minute."""
+
+
+PROGRESS = re.compile(r"^fastpin: \d+%: .*\n?", re.MULTILINE)
+"""A line of a log, which a busy machine has time for."""
+
+
+def without_progress(said: str) -> str:
+    """What a process has said beside its progress."""
+    return PROGRESS.sub("", said)
 
 
 def hear_interrupts() -> None:

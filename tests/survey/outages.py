@@ -44,6 +44,7 @@ from fastpin.storage.journal import is_empty
 from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS
 from fastpin.studies import sweep
 from fastpin.studies.plan import read_plan
+from tests.support.processes import without_progress
 
 CASE = """
 [dundurs]
@@ -79,9 +80,6 @@ HERE = (sys.executable, "-m", "tests.survey.outages")
 """This file as a program, which calls :func:`cluster` or :func:`work`."""
 
 ROOT = Path(__file__).resolve().parents[2]
-
-PROGRESS = re.compile(r"fastpin: \d+%: ")
-"""The beginning of a line of a log, which a busy machine has time for."""
 
 LONGEST = 300.0
 """Seconds after which a command counts as hanging."""
@@ -240,10 +238,9 @@ class Trial:
         before = _names(folder)
         limit = int(self._rng.uniform(0.0, 0.97) * self._bytes)
         process = started(folder, *self._words(self.command.words), limit=limit)
-        said = process.communicate(timeout=LONGEST)[1].strip()
+        said = without_progress(process.communicate(timeout=LONGEST)[1]).strip()
         self.counts["full"] += 1
-        spoken = [line for line in said.split("\n") if line.startswith("fastpin: ") and "warning" not in line]
-        lines = [line for line in spoken if not PROGRESS.match(line)]
+        lines = [line for line in said.split("\n") if line.startswith("fastpin: ") and "warning" not in line]
         is_said = len(lines) == 1 and self._is_named(lines[0]) and "Traceback" not in said
         if process.returncode != 1 or not is_said:
             self.findings.append(f"{self.name}: full at {limit} bytes: exit code {process.returncode}: {said[-600:]}")
