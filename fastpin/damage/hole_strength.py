@@ -22,7 +22,7 @@ from fastpin.model.ply import PlyCriterion
 from fastpin.model.points import Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.strength import StrengthAssessment, check_near, checked_lengths
+from fastpin.model.strength import StrengthAssessment, check_strength
 from fastpin.states.state import State
 
 AROUND = 720
@@ -157,8 +157,9 @@ def joint_strength(
     """
     checks.instance("state", state, State, "a fastpin.State")
     plate = laminate_of(state.problem)
-    lengths = checked_lengths(distance, tension, compression)
-    check_near(state.problem, lengths)
+    how = StrengthAssessment(criterion, distance, tension, compression)
+    check_strength(state.problem, how)
+    lengths = how.lengths
     force = force_on_pin(state)
     direction = float(np.angle(force)) if force else math.nan
     if "distance" in lengths:

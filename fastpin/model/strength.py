@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -86,12 +85,7 @@ def check_strength(problem: Problem, how: StrengthAssessment) -> None:
     plate = problem.joint.hole.laminate
     if plate is None or not plate.plies or any(ply.strengths is None for ply, _ in plate.plies):
         raise InputError("strength", "belongs to a plate that is a laminate whose plies have strengths")
-    check_near(problem, how.lengths)
-
-
-def check_near(problem: Problem, lengths: Mapping[str, float]) -> None:
-    """Raise :class:`InputError` if one of the `lengths` by name, m, is far from the hole."""
-    for name, value in lengths.items():
+    for name, value in how.lengths.items():
         # At 100 radii the pin's stress is 1 %, and measured lengths are about one radius.
         if is_above(value, 100.0 * problem.hole_radius):
             words = units(problem)["length"].text(value)

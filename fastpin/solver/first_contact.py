@@ -577,8 +577,6 @@ def _nearest(system: System, resting: Configuration) -> int:
     A gripped pin touches three nodes. Rounding would choose another one of them in a mirror image.
     """
     touching = np.flatnonzero(resting.gap - resting.gap.min() <= SLIGHT * resting.gap.max())
-    if touching.size == 1:
-        return int(touching[0])
     gap, _, curvature = hole_gap(system, resting.load, system.grid.theta[touching])
     return int(touching[np.argmin(gap + curvature)])
 

@@ -53,10 +53,9 @@ class Piece:
 
     def load_at(self, fraction: float) -> np.ndarray:
         """The dimensionless load at a fraction of the step. A fraction beside an end, up to rounding, is the end."""
-        if abs(fraction - self.end) <= ROUNDED:
-            return self.after.copy()
-        if abs(fraction - self.begin) <= ROUNDED:
-            return self.before.copy()
+        for end, load in ((self.end, self.after), (self.begin, self.before)):
+            if abs(fraction - end) <= ROUNDED:
+                return load.copy()
         return self.before + (fraction - self.begin) / (self.end - self.begin) * (self.after - self.before)
 
 

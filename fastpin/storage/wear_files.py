@@ -124,8 +124,7 @@ def wear(
         raise InputError("friction", "is a function of lives in memory: a file can't hold it, so leave output out")
     task = WearTask(problem, history, how, SolveOptions(**options), grid, progress, friction)
     warn_of([*doubts(problem, history, task.options), *wear_doubts(problem, how)], 2)
-    title, judged = checks.string("title", title), checked_beside(problem, {"fatigue": fatigue})
-    _check_median(fatigue)
+    title, judged = checks.string("title", title), checked_beside(problem, {"fatigue": _median(fatigue)})
     for name, value in (("overwrite", overwrite), ("resume", resume)):
         if checks.true_or_false(name, value) and output is None:
             raise InputError(name, "needs an output")
@@ -144,11 +143,12 @@ def wear(
     return load_wear(path)
 
 
-def _check_median(fatigue: FatigueAssessment | None) -> None:
-    """Refuse an assessment with a scatter of lives or a residual stress."""
-    if fatigue is not None and (fatigue.residual_stress, fatigue.reliability) != (None, None):
+def _median(fatigue: FatigueAssessment | None) -> FatigueAssessment | None:
+    """Return an assessment; one with a scatter of lives or a residual stress is refused."""
+    if isinstance(fatigue, FatigueAssessment) and (fatigue.residual_stress, fatigue.reliability) != (None, None):
         words = "must have neither residual_stress nor reliability: a life of wear takes median lives without them"
         raise InputError("fatigue", words)
+    return fatigue
 
 
 def _in_memory(task: WearTask) -> WearResult:

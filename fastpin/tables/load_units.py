@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, choice, set_fields
+from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.synonyms import closest
-from fastpin.model.unit_systems import INCH, POUND, SI, Measure, checked_system
+from fastpin.model.unit_systems import INCH, POUND, SI, Measure
 from fastpin.model.units import measures_of
 
 
@@ -27,12 +26,7 @@ class LoadUnit(NamedTuple):
     zero: float = 0.0
 
 
-HOW = ("per metre", "with thickness", "dimensionless")
-"""Ways in which loads are given."""
-
-
-@dataclass(frozen=True)
-class Basis:
+class Basis(NamedTuple):
     """How loads are given.
 
     Attributes
@@ -43,11 +37,8 @@ class Basis:
         The system of units of numbers without a unit, see :func:`fastpin.model.unit_systems.checked_system`.
     """
 
-    how: str = "per metre"
+    how: Literal["per metre", "with thickness", "dimensionless"] = "per metre"
     system: str = SI
-
-    def __post_init__(self) -> None:
-        set_fields(self, how=choice("how", self.how, HOW), system=checked_system("system", self.system))
 
 
 IN_SI = Basis()

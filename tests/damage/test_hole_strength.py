@@ -82,7 +82,7 @@ def test_modes_by_the_angle_from_the_force():
         ("distance", "negative", lambda: joint_strength(state(), distance=-1e-3)),
         ("criterion", "did you mean", lambda: joint_strength(state(), "hill", distance=1e-3)),
         ("tension", "force on the pin", lambda: joint_strength(state(syy=1e6), tension=1e-3, compression=1e-3)),
-        ("plies", "unknown", lambda: joint_strength(of(TURNED), distance=1e-3)),
+        ("strength", "belongs to a plate", lambda: joint_strength(of(TURNED), distance=1e-3)),
         ("plate", "laminate", lambda: joint_strength(of(MATERIALS["aluminium"]), distance=1e-3)),
     ],
 )
