@@ -156,7 +156,7 @@ def identify(
     model = LoopModel(
         problem, held_loads(as_history(history), names), names, measured, start, by_cycle, nodes, progress
     )
-    return _result(model, LoopFit(model, wanted))
+    return _result(model, LoopFit(model, wanted).fit())
 
 
 def _measured(problem: Problem, loop: object) -> tuple[str, str]:

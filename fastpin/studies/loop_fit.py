@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -39,17 +40,16 @@ STEPS = {"friction": 0.03, "compliance": 5e-3, "displacement_offset": 1e-3, "dis
 LEAST, MOST = 0.05, 20.0
 """Least and most 1/friction. A pin with a friction of 20 sticks wherever it touches."""
 
-ROUNDS, CONVERGED, ROUGH = 5, 0.05, 2.0
-"""Most Jacobians by differences, and a change of the sum of squares in units of the noise that counts as none. As long
-as the fit is looked for, a larger one does."""
+ROUGH, CONVERGED = 2.0, 0.05
+"""Gain by a Jacobian by differences, in units of the noise, after which another one is made; the gain of a step that
+counts as none."""
 
-TRIES, CLOSE = 6, 0.25
-"""Most values of a friction that are tried for each end of its interval, and how close the last one comes, in standard
-deviations."""
+TRIES, CLOSE, FIRST = 6, 0.25, 0.25
+"""Most values of a friction that are tried for each end of its interval; how close one comes, in standard deviations;
+the longest first step, in parts of 1/friction. It is short, for the sum of squares rises steeply where all slips."""
 
-WIDER = 1.1
-"""Factor of the interval of a friction. Contacts that slip more and less fit by turns, and the other unknowns are not
-fitted to the end. Without it 285 of 309 intervals held the truth, with it 290."""
+BENT = 1.1
+"""Usual factor for curvature: the ends are looked for there, and interpolated between the values that were tried."""
 
 BEHIND = 3
 """Branches behind a turning point that its error is taken to move. Beyond them the contact has forgotten it."""
@@ -190,11 +190,16 @@ class Whitening:
 
 
 class Minimum(NamedTuple):
-    """A sum of squares, the unknowns of shape (unknowns,) there, and the Jacobian of shape (samples, unknowns)."""
+    """Distances (n,) with the least sum of squares, the unknowns there, and the Jacobian of shape (n, unknowns)."""
 
-    cost: float
+    distances: np.ndarray
     at: np.ndarray
     jacobian: np.ndarray
+
+    @property
+    def cost(self) -> float:
+        """The sum of squares."""
+        return float(self.distances @ self.distances)
 
 
 class LoopFit:
@@ -240,48 +245,58 @@ class LoopFit:
         freedom = loop.time.size - self.sizes.size
         self.sigma = float(special.stdtrit(freedom, 0.975))
         self.whitening = Whitening(np.zeros((loop.time.size, 0)), np.zeros(0))
-        self._solve(np.array([value for _, value, _ in guess]) / self.sizes)
+        self.least, self.rivals = math.inf, (math.inf, -math.inf)
+        self.first = np.array([value for _, value, _ in guess]) / self.sizes
+        self.wanted = wanted
 
-    def _solve(self, first: np.ndarray) -> None:
+    def fit(self) -> LoopFit:
+        """Fit the unknowns, and return this object with its results."""
         model = self.model
-        self.residuals(first, must=True)
-        best = self._descent(first, ROUGH)
-        for factor in STARTS:
-            start = best.at.copy()
-            start[: self.cycles] *= factor
-            other = self._minimum(start, best.jacobian, 0)
-            if other.cost < best.cost + NEARBY and (other := self._minimum(*other[1:])).cost < best.cost - CONVERGED:
-                best = other
+        if self.cycles == 1:
+            best = self._search()
+        else:  # one friction for all cycles is found sooner
+            common = LoopFit(replace(model, by_cycle=False, known={}), self.wanted)
+            friction, *others = common._search().at
+            model.solved = common.model.solved
+            best = self._minimum(np.array([friction] * self.cycles + others))
         self._whiten(best.at)
-        best = self._descent(best.at)
-        points = self._profiles(best)
-        while (lowest := min(points, key=lambda point: point.cost)).cost < best.cost - CONVERGED:
-            best = self._descent(lowest.at)
-            points = self._profiles(best)
-        ends, moved = np.array([point.at for point in points]), math.inf
-        at_limit, ends = ends.min(axis=0) - self.bounds[0] < 1e-9, ends - best.at
-        offsets = self.names.index("displacement_offset")  # friction and rig stand before them
+        best = self._descent(self._minimum(best.at, self.whitening(best.jacobian)).at)
+        self._set_bars(best)
+        profiles = [self._profile(unknown, best) for unknown in range(self.cycles)]
+        lowest = min(chain(*profiles), key=lambda point: point.cost)
+        best = best if lowest is best else self._minimum(*lowest[1:])
+        ends = np.array([self._ends(unknown, [*points, best], best) for unknown, points in enumerate(profiles)])
+        moved, offsets = math.inf, self.names.index("displacement_offset")  # friction and rig stand before them
         while moved > MOVED and model.points < FINEST * POINTS:
             model.points *= FINER
             before, best = best, self._minimum(best.at, best.jacobian if math.isinf(moved) else None)
             moved = float(np.max((np.abs(best.at - before.at) / self.deviations)[:offsets]))
         self.moved = moved
         self._set_bars(best)
-        bars = self.sigma * self.deviations
-        bars[: self.cycles] = 0.0
-        low = np.maximum(self.found + np.minimum(ends.min(axis=0), -bars), self.bounds[0])
-        self.low = np.where(at_limit, self.bounds[0], low)
-        self.high = self.found + np.maximum(ends.max(axis=0), bars)
+        self.low = np.maximum(self.found + ends[:, 0].min(axis=0), self.bounds[0])
+        self.high = self.found + ends[:, 1].max(axis=0)
+        return self
 
-    def _descent(self, at: np.ndarray, gain: float = CONVERGED) -> Minimum:
-        """The minimum that is found from a start, with a Jacobian by differences, when another gains less than this."""
+    def _search(self) -> Minimum:
+        """The least sum of squares that is found from the first guess, and from other frictions."""
+        self.residuals(self.first, must=True)
+        minima = [self._descent(self.first)]
+        for factor in STARTS:
+            start = minima[0].at.copy()
+            start[0] = factor * max(start[0], 1.0)
+            other = self._minimum(start, minima[0].jacobian, 0)
+            if other.cost < minima[0].cost + NEARBY:
+                minima.append(self._minimum(*other[1:]))
+        frictions = [point.at[0] for point in minima]
+        self.rivals = min(frictions), max(frictions)
+        return min(minima, key=lambda point: point.cost)
+
+    def _descent(self, at: np.ndarray) -> Minimum:
+        """The minimum that is found from a start, with new Jacobians by differences as long as they gain much."""
         first = self.residuals(at)
-        cost = float(first @ first)
-        for _ in range(ROUNDS):
-            found = self._minimum(at)
-            at, before, cost = found.at, cost, found.cost
-            if before - cost < gain:
-                break
+        before, found = float(first @ first), self._minimum(at)
+        while before - found.cost > ROUGH:
+            before, found = found.cost, self._minimum(found.at)
         return found
 
     def values(self, unknowns: np.ndarray) -> dict[str, Any]:
@@ -293,7 +308,7 @@ class LoopFit:
     def _whiten(self, at: np.ndarray) -> None:
         """Take the errors of the turning points into account, as they are at these unknowns."""
         model, loop = self.model, self.model.loop
-        here, turns = self.compared(at)[0], len(loop.shares)
+        self.least, here, turns = math.inf, self.compared(at)[0], len(loop.shares)
         step = STEPS["displacement_offset"] * float(np.ptp(loop.displacement))
         moved = np.zeros((turns, loop.time.size))
         for first in range(min(BEHIND, turns)):  # turning points so far apart move different branches
@@ -359,7 +374,7 @@ class LoopFit:
         for _ in range(TRIALS):
             step = self._step(at, here, matrix, damping, kept)
             promised = here + matrix @ step
-            if here @ here - promised @ promised < CONVERGED:
+            if here @ here - promised @ promised < CONVERGED * max((here @ here - self.least) / NEARBY, 1.0):
                 break
             there = self.residuals(at + step)
             if abs(there[0]) != LOST:
@@ -370,7 +385,8 @@ class LoopFit:
                 damping, failed = max(10.0 * damping, 0.3), failed + 1
                 if failed == FAILURES:
                     break
-        return Minimum(float(here @ here), at, matrix)
+        self.least = min(self.least, float(here @ here))
+        return Minimum(here, at, matrix)
 
     def _step(
         self, at: np.ndarray, here: np.ndarray, matrix: np.ndarray, damping: float, kept: int | None
@@ -392,55 +408,96 @@ class LoopFit:
 
         Samples that lie closer than their noise make no bar smaller. Noise that a filter has smoothed makes them wider.
         """
-        self.cost, self.found, jacobian = best
+        self.cost, self.found, jacobian = best.cost, best.at, best.jacobian
         self.scatter = math.sqrt(self.cost / max(len(jacobian) - self.found.size, 1))
-        self.widened = max(self.scatter, 1.0) * math.sqrt(correlated_samples(self.residuals(best.at)))
+        self.widened = max(self.scatter, 1.0) * math.sqrt(correlated_samples(best.distances))
         length = np.linalg.norm(jacobian, axis=0)
         length[length == 0.0] = 1e-300
         unit = jacobian / length
         self.covariance = self.widened**2 * np.linalg.pinv(unit.T @ unit, rcond=1e-14) / np.outer(length, length)
         self.deviations = np.sqrt(np.diag(self.covariance))
 
-    def _profiles(self, best: Minimum) -> list[Minimum]:
-        """The points at both ends of the interval of each friction, and perhaps one with a smaller sum of squares."""
-        self._set_bars(best)
-        return [point for unknown in range(self.cycles) for point in self._profile(unknown, best)]
-
-    def _away(self, point: Minimum, best: Minimum) -> float:
-        """How much larger than the least one a sum of squares is, in standard deviations of one unknown."""
-        return math.sqrt(max(point.cost - best.cost, 1e-4)) / self.widened
-
     def _profile(self, unknown: int, best: Minimum) -> list[Minimum]:
-        """The two points at which the sum of squares is larger by that of 95 %, or one at which it is less.
+        """Points over a friction, all other unknowns fitted again, to both ends of its interval.
 
-        One unknown is moved to either side, and all others are fitted again. Both sides of the friction differ: the
-        less of the contact slips, the less the loop tells.
+        On either side two points lie around the end, or one close to it. Both sides differ: the less of the contact
+        slips, the less the loop tells. The first side is seen to again, for the second one may have a better fit.
         """
-        low, high = self.bounds[:, unknown]
-        ends, reach = [], WIDER * self.sigma
-        for side in (-1.0, 1.0):
-            step, inside, outside = reach * self.deviations[unknown], (0.0, 0.0), (math.inf, math.inf)
+        points, reach = [best], BENT * self.sigma
+        ridge = self.covariance[unknown] / self.covariance[unknown, unknown]
+        for side, rival, bound in 2 * [*zip((-1.0, 1.0), self.rivals, self.bounds[:, unknown], strict=True)]:
+            step = min(reach * self.deviations[unknown], FIRST * max(best.at[unknown], 1.0))
+            step = max(step, side * (rival - best.at[unknown]))  # an interval may have a gap
             for _ in range(TRIES):
-                place = float(np.clip(best.at[unknown] + side * step, low, high))
-                start = best.at.copy()
-                start[unknown] = place
-                point = self._minimum(start, best.jacobian, unknown)
-                if abs(self._away(point, best) - reach) < CLOSE:  # it may be less with a Jacobian from there
-                    point = self._minimum(point.at, None, unknown)
-                if point.cost < best.cost - CONVERGED:
-                    return [point]
-                step = abs(place - best.at[unknown])
-                size = self._away(point, best)
-                if abs(size - reach) < CLOSE or (size < reach and place in (low, high)):
+                (inner, size), (outer, beyond) = self._around(points, unknown, side, reach)
+                ends = outer is inner and abs(inner.at[unknown] - bound) < 1e-9
+                if ends or min(abs(size - reach), abs(beyond - reach)) < CLOSE:
                     break
-                inside, outside = ((step, size), outside) if size < reach else (inside, (step, size))
-                step *= float(np.clip(reach / size, 1.2, 3.0))
-                if math.isfinite(outside[0]):
-                    part = float(np.clip((reach - inside[1]) / (outside[1] - inside[1]), 0.2, 0.8))
-                    step = inside[0] + part * (outside[0] - inside[0])
-            way_on = min(reach / size, 1.0 + CLOSE)
-            ends.append(point._replace(at=np.clip(best.at + way_on * (point.at - best.at), *self.bounds)))
-        return ends
+                if outer is not inner:
+                    low = max(size, 0.5)  # the sizes grow faster than the way: their logarithms are interpolated
+                    part = float(np.clip(math.log(reach / low) / math.log(beyond / low), 0.2, 0.8))
+                    start = inner.at + part * (outer.at - inner.at)
+                else:
+                    on = np.clip(reach / size, 1.2, 3.0) * (inner.at - best.at)
+                    start = best.at + (side * step * ridge if inner is best else on)
+                start[unknown] = np.clip(start[unknown], *self.bounds[:, unknown])
+                nearest = inner if reach - size < beyond - reach else outer
+                points.append(self._minimum(start, nearest.jacobian, unknown))
+        return points
+
+    def _around(self, points: list[Minimum], unknown: int, side: float, reach: float) -> Any:
+        """The outermost point within a reach of the least sum of squares, and the next one, with their sizes.
+
+        The size of a point is how much larger its sum of squares is, in standard deviations of one unknown. Where no
+        point is further out, it is the same one with an infinite size.
+        """
+        outwards = sorted(points, key=lambda point: side * point.at[unknown])
+        cost = np.array([point.cost for point in outwards])
+        sizes = [*(np.sqrt(np.maximum(cost - cost.min(), 1e-4)) / self.widened).tolist(), math.inf]
+        last = max(place for place, size in enumerate(sizes) if size < reach)
+        return zip([*outwards, outwards[-1]][last : last + 2], sizes[last : last + 2], strict=True)
+
+    def _ends(self, unknown: int, points: list[Minimum], best: Minimum) -> np.ndarray:
+        """How far the intervals of all unknowns reach down and up by the profile of a friction, shape (2, unknowns).
+
+        The intervals of others have a part along the profile and a part across it. One that ends at a bound is
+        infinite.
+        """
+        along = self.covariance[unknown] ** 2 / self.covariance[unknown, unknown]
+        across = self.sigma * np.sqrt(np.maximum(self.deviations**2 - along, 0.0))
+        across[: self.cycles] = 0.0
+        reach, found = BENT * self.sigma, []
+        tried = [min(self._around(points, unknown, side, reach), key=lambda point: abs(point[1] - reach))[0]
+                 for side in (-1.0, 1.0)]  # fmt: skip
+        reach = self.sigma * curvature_factor(*(each.distances for each in (tried[0], best, tried[1])))
+        for side in (-1.0, 1.0):
+            (inner, size), (outer, beyond) = self._around(points, unknown, side, reach)
+            if outer is inner:
+                end = best.at + min(reach / size, 1.0 + CLOSE) * (inner.at - best.at)
+            else:
+                end = inner.at + (reach - size) / (beyond - size) * (outer.at - inner.at)
+            found.append(np.clip(end, *self.bounds) - best.at)
+        low, high = np.minimum(np.min(found, axis=0), 0.0), np.maximum(np.max(found, axis=0), 0.0)
+        at_bound = low + best.at - self.bounds[0] < 1e-9
+        return np.array([np.where(at_bound, -np.inf, -np.hypot(low, across)), np.hypot(high, across)])
+
+
+def curvature_factor(low: np.ndarray, middle: np.ndarray, high: np.ndarray) -> float:
+    """Return the factor by which a curved fit needs a wider interval of 95 %.
+
+    The computed loops of all frictions are a curve in the space of the samples. `low`, `middle` and `high` (n,) are
+    points of it: the ends of the interval and the fit. From the truth the rest of a straight line lies in two opposite
+    directions. The noise has more than c deviations along one of them by the chance 2 Q(c), with Q of the normal law.
+    The directions of a curve sweep an arc of the unit sphere. An arc of length L adds at most L / (2 pi) exp(-c^2 / 2):
+    I. Johnstone and D. Siegmund, On Hotelling's formula for the volume of tubes and Naiman's inequality, Annals of
+    Statistics 17, 1989. On either side of the truth the arc is taken as long as the angle between both halves of the
+    interval.
+    """
+    first, second, usual = middle - low, high - middle, float(special.ndtri(0.975))
+    size = float(np.linalg.norm(first) * np.linalg.norm(second))
+    part = math.acos(np.clip(first @ second / size, -1.0, 1.0)) / math.pi if size else 0.0
+    rest = (lambda c: 2.0 * special.ndtr(-c) + part * math.exp(-0.5 * c * c) - 0.05, 0.99 * usual, 4.0)
+    return float(optimize.brentq(*rest)) / usual
 
 
 def correlated_samples(distances: np.ndarray) -> float:

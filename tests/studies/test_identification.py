@@ -9,6 +9,7 @@ import pytest
 from fastpin.errors import InputError
 from fastpin.model.history import LoadHistory
 from fastpin.studies.identification import FITTED, Identified, held_loads, identify
+from fastpin.studies.loop_fit import curvature_factor
 from tests.support.loops import PRESSED, THICKNESS, Measured, joint
 
 RIG = 250e6 / THICKNESS
@@ -136,6 +137,23 @@ def test_constant_loads_are_the_middle_of_the_history() -> None:
     rows = [{"P": 1e5}, *({"P": 1e5 * (1.0 + 0.004 * k), "ux": 1e-6 * k} for k in (1, -1, 0, 2, -2))]
     assert held_loads(LoadHistory(rows), ("ux", "Q")) == {"P": 1e5}
     assert held_loads(LoadHistory([{"P": 1e5, "sxx": 2e6}]), ("ux", "Q")) == {"P": 1e5, "sxx": 2e6}
+
+
+@pytest.mark.parametrize("radius", [3.0, 6.0])
+def test_a_curved_fit_has_a_wider_interval(radius: float) -> None:
+    """Noise of two samples beside a circle: the sum of squares at the truth, less that of the nearest point."""
+    angles = np.array([-1.96, 0.0, 1.96]) / radius
+    points = radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    noise = np.random.default_rng(1).normal(size=(200_000, 2))
+    more = (noise**2).sum(axis=1) - (np.linalg.norm(points[1] + noise, axis=1) - radius) ** 2
+    reach = 1.96 * curvature_factor(*points)
+    assert 0.95 <= np.mean(more < reach**2) < 0.975
+    assert reach > 1.96 + 0.3 / radius
+
+
+def test_a_straight_fit_has_the_usual_interval() -> None:
+    line = np.outer([-1.0, 0.0, 2.0], [0.6, 0.8, 0.0])
+    assert curvature_factor(*line) == pytest.approx(1.0, abs=1e-6)
 
 
 def test_what_is_fitted_is_named() -> None:
