@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from fastpin.studies import identification
 from fastpin.studies.identification import identify
 from tests.support.loops import PRESSED, THICKNESS, Measured
 
@@ -36,7 +37,15 @@ EACH = 12
 
 
 @pytest.mark.parametrize("name", LOOPS)
-def test_intervals_hold_the_truth(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_intervals_hold_the_truth(
+    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Errors of 1/friction count in parts of the bar on the side of the truth, for bars are longer on one side.
+
+    All loops count, also the refused ones. The others are a choice by chance, of those that seem to slip much: of 43
+    "few samples" only 3 told a friction, with a mean error of a whole bar.
+    """
+    monkeypatch.setattr(identification, "TELLING", math.inf)
     (measured, options), away, friction, rig = LOOPS[name], [], 0, 0
     truth = [measured.friction * (1.0 + change) for change in measured.changes or (0.0,)]
     clean = measured.clean()
@@ -45,11 +54,10 @@ def test_intervals_hold_the_truth(name: str, capsys: pytest.CaptureFixture[str])
         found = identify(measured.guess(), [PRESSED], record, **options)
         for (value, low, high), true in zip(found.frictions, truth, strict=True):
             friction += low <= true <= high
-            if not math.isnan(value):
-                bar = 0.5 * (1.0 / low - 1.0 / high)
-                away.append((1.0 / value - 1.0 / true) / bar)
+            bar = 1.0 / (high if value < true else low) - 1.0 / value
+            away.append((1.0 / value - 1.0 / true) / abs(bar))
         rig += found.estimates["stiffness"].low <= measured.rig <= found.estimates["stiffness"].high
-    bias = sum(away) / max(len(away), 1)
+    bias = sum(away) / len(away)
     with capsys.disabled():
         inside = f"friction {friction} of {EACH * len(truth)}, stiffness {rig} of {EACH} inside"
         print(f"{name}: {inside}; mean error {bias:+.2f} bars")
