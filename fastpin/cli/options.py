@@ -298,10 +298,7 @@ def add_live(commands: Any) -> None:
     """Add ``live``."""
     live = _command(commands, "live", "live", "run", "open a page in the browser: drag the load with the mouse")
     _option(live, "case", None, BUILT_IN, Path, nargs="?")
-    _option(live, "--nodes", "N", "number of nodes round the hole, 5 to 1600 (default 200)")
-    words = "share the page with a class at this address of the machine, such as 192.168.1.20; everyone who reaches it "
-    words += "and has the page's address can use the page (5 to 400 nodes, default 100)"
-    _option(live, "--host", "ADDRESS", words)
+    _option(live, "--nodes", "N", "number of nodes round the hole, 5 to 1600 (default 200)", default="200")
     _option(live, "--port", "N", "port of the page (default: a free one)", default="0")
     words = "print the address, and open no browser"
     live.add_argument("--no-browser", dest="browser", action="store_false", help=words)

@@ -1,5 +1,4 @@
 from .recording import record_life as record_life
 from .recording import record_page as record_page
 from .recording import recorded_places as recorded_places
-from .server import address_of_machine as address_of_machine
 from .server import serve as serve

@@ -18,9 +18,10 @@ import numpy as np
 from fastpin.casefile import case_text
 from fastpin.errors import FastpinError, InputError
 from fastpin.kernels.status import OPEN
+from fastpin.live import protocol
 from fastpin.live.controls import ControlScales, changed_fields, load_controls, problem_controls, vector_axes
 from fastpin.live.pictures import packed, picture
-from fastpin.live.protocol import ALONE, MOST_UNDONE, Limits, Message, refusal
+from fastpin.live.protocol import Message, refusal
 from fastpin.model import LOADS, Case, Grid, Problem, angles
 from fastpin.model.doubts import doubts
 from fastpin.model.options import ALL_ROUND, SolveOptions
@@ -39,9 +40,6 @@ NODES = 200
 A multiple of four puts a node at the bottom, at the top and at either side. So a load in these directions has a
 symmetric contact. Between two nodes, one of them would be the first to close, and would turn the pin a little.
 """
-
-NODES_OF_CLASS = 100
-"""Nodes round the hole in a class: half the work."""
 
 LEAST_CLOSED = 20
 """Nodes in contact under the first load. Of fewer, curves are coarse, and the peak of the shear may be anywhere."""
@@ -85,7 +83,6 @@ class LiveContact:
     case : Case
     nodes : int
         Nodes round the hole.
-    limits : Limits
 
     Attributes
     ----------
@@ -97,10 +94,10 @@ class LiveContact:
 
     _left = 0  # sessions left behind by all contacts
 
-    def __init__(self, case: Case, nodes: int = NODES, limits: Limits = ALONE) -> None:
-        self._case, self._nodes, self._limits = case, nodes, limits
+    def __init__(self, case: Case, nodes: int = NODES) -> None:
+        self._case, self._nodes = case, nodes
         self._scales = ControlScales(case.problem, case.history)
-        self._past: deque[Mark] = deque(maxlen=MOST_UNDONE)
+        self._past: deque[Mark] = deque(maxlen=protocol.MOST_UNDONE)
         self._future: list[Mark] = []
         self._pictures: dict[int, Answer] = {}
         self._trail: list[int] = []
@@ -185,8 +182,6 @@ class LiveContact:
         return self._lead(session, follow, gesture)
 
     def _obey_nodes(self, nodes: int, follow: str, gesture: int) -> Iterator[None]:
-        if nodes > self._limits.nodes:
-            raise InputError("nodes", f"must be at most {self._limits.nodes} on this page, not {nodes}")
         mark, self._nodes = self._lasting_mark(), nodes
         return self._lead(self._new_session(self.session.problem), follow, gesture, mark)
 
@@ -266,9 +261,9 @@ class LiveContact:
                 closed = np.count_nonzero(state.status != OPEN) or nodes
             except ConvergenceError:
                 closed = 1
-            if closed >= LEAST_CLOSED or nodes >= self._limits.nodes:
+            if closed >= LEAST_CLOSED or nodes >= protocol.MOST_NODES:
                 break
-            nodes = min(4 * math.ceil(0.25 * nodes * max(2.0, LEAST_CLOSED / closed)), self._limits.nodes)
+            nodes = min(4 * math.ceil(0.25 * nodes * max(2.0, LEAST_CLOSED / closed)), protocol.MOST_NODES)
             session = Session(session.problem, nodes, arc=ALL_ROUND, undo=0)
         if closed < LEAST_CLOSED:
             session = Session(session.problem, self._nodes, undo=0)
@@ -283,7 +278,7 @@ class LiveContact:
             shown, self._serial, gesture, self._grid_name(state.grid), self._case.history
         )
         self._trail.append(self._serial)
-        if len(self._pictures) > self._limits.pictures:
+        if len(self._pictures) > protocol.MOST_PICTURES:
             oldest = next(iter(self._pictures))
             del self._pictures[oldest]
             if self._trail[0] == oldest:
@@ -301,7 +296,7 @@ class LiveContact:
         """Make the place before a gesture one to go back to. What was undone before is forgotten."""
         if gesture != self._gesture or gesture == NO_GESTURE:
             self._past.append(mark)
-            while sum(past.size for past in self._past) > self._limits.undone_nodes:
+            while sum(past.size for past in self._past) > protocol.MOST_UNDONE_NODES:
                 self._past.popleft()
         self._future.clear()
         self._gesture = gesture
@@ -360,7 +355,7 @@ class LiveContact:
         """The problem, its controls and its loads."""
         return case_document(self._case.title, self.session.problem, self._scales) | {
             "nodes": self._nodes,
-            "most_nodes": self._limits.nodes,
+            "most_nodes": protocol.MOST_NODES,
             "history": [_named(row) for row in self._case.history.values(np.full(len(LOADS), np.nan))[:MOST_PLAYED]],
         }
 

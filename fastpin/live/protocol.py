@@ -21,8 +21,7 @@ stop       End a long history that is being followed. It has no answer: the mess
 The server answers each message with one of these:
 
 =========  ==========================================================================================================
-welcome    To hello. ``session``: the name of the session; ``version`` of fastpin; ``shared``: the address of the page
-           if others may open it, or "".
+welcome    To hello. ``session``: the name of the session; ``version`` of fastpin.
 pictures   The history of the page changes: ``drop`` pictures at its beginning go, the next ``keep`` stay, those behind
            them go, and the pictures ``add`` are appended. ``grids``: angles of the nodes by the name of a grid.
            ``undos``, ``redos``: gestures that can be undone and redone. ``case``: the problem and its controls, if they
@@ -67,37 +66,17 @@ MOST_PICTURES = 2_000
 MOST_UNDONE = 200
 """Gestures that can be undone."""
 
+MOST_UNDONE_NODES = 20_000
+"""Nodes of all states for undo together: 100 gestures with 200 nodes, 12 with 1,600. A state takes 4 kB a node."""
 
-@dataclass(frozen=True)
-class Limits:
-    """The limits of a server and of its contacts.
+MOST_NODES = 1_600
+"""Nodes round the hole. A step with so many takes half a second."""
 
-    Attributes
-    ----------
-    connections : int
-        Open connections. Each page has one.
-    sessions : int
-        Contacts, each with its history: some 20 MB with 200 nodes.
-    pictures : int
-        Pictures of a history that a contact remembers.
-    undone_nodes : int
-        Nodes of all states for undo together: 100 gestures with 200 nodes, 12 with 1,600. A state takes 4 kB a node.
-    nodes : int
-        Nodes round the hole. A step with 1,600 takes half a second.
-    """
+MOST_CONNECTIONS = 16
+"""Open connections. Each page has one."""
 
-    connections: int = 16
-    sessions: int = 8
-    pictures: int = MOST_PICTURES
-    undone_nodes: int = 20_000
-    nodes: int = 1_600
-
-
-ALONE = Limits()
-"""The limits of a page for this machine."""
-
-CLASS = Limits(connections=80, sessions=40, pictures=500, undone_nodes=2_000, nodes=400)
-"""The limits of a page for a class: 40 visitors. A step of one of them keeps the others waiting for 30 ms at most."""
+MOST_SESSIONS = 8
+"""Contacts, each with its history: some 20 MB with 200 nodes."""
 
 
 @dataclass(frozen=True)
@@ -137,7 +116,7 @@ FIELDS: dict[str, dict[str, Any]] = {
     },
     "change": {"changes": _table, "follow": _follow, "gesture": _whole},
     "nodes": {
-        "nodes": lambda name, value: whole_number(name, value, LEAST_NODES, ALONE.nodes),
+        "nodes": lambda name, value: whole_number(name, value, LEAST_NODES, MOST_NODES),
         "follow": _follow,
         "gesture": _whole,
     },

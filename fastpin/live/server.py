@@ -1,4 +1,4 @@
-"""The server of the live page: on this machine only, or for a class at an address of this machine.
+"""The server of the live page, on this machine only.
 
 The page and its websocket stand under a random token. Host and Origin are checked, so no other page of the browser can
 reach the server. docs/live.md lists the limits; their numbers stand in :mod:`fastpin.live.protocol`.
@@ -11,11 +11,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import errno
 import functools
 import hmac
-import io
-import ipaddress
 import json
 import logging
 import secrets
@@ -26,18 +23,17 @@ from collections.abc import AsyncIterator, Awaitable, Callable, Generator, Seque
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-import segno
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from fastpin.errors import FastpinError, InputError
+from fastpin.live import protocol
 from fastpin.live.contact import LiveContact
 from fastpin.live.page import live_page, page_files, recorded_page
-from fastpin.live.protocol import ALONE, MOST_A_SECOND, MOST_BYTES, MOST_WAITING, Limits, Message, read_message, refusal
-from fastpin.model.checks import any_text, as_toml
+from fastpin.live.protocol import MOST_A_SECOND, MOST_BYTES, MOST_WAITING, Message, read_message, refusal
 from fastpin.version import __version__
 
 ADDRESS = "127.0.0.1"
-"""The address on which the server listens unless another one is given: that of this machine, for this machine."""
+"""The address on which the server listens: that of this machine, for this machine."""
 
 TURN = 0.05
 """Seconds after which a long history lets the work of other pages pass."""
@@ -136,11 +132,10 @@ class RateLimit:
 class Sessions:
     """The contacts of all pages by name. A page that comes back finds its contact again.
 
-    There are `most` of them.
+    There are :data:`fastpin.live.protocol.MOST_SESSIONS` of them.
     """
 
-    def __init__(self, most: int) -> None:
-        self._most = most
+    def __init__(self) -> None:
         self._contacts: dict[str, LiveContact] = {}
         self._turns: dict[str, asyncio.Lock] = {}
         self._open: set[str] = set()
@@ -161,10 +156,11 @@ class Sessions:
         InputError
             If all contacts have pages.
         """
-        if len(self._contacts) >= self._most:
+        if len(self._contacts) >= protocol.MOST_SESSIONS:
             idle = next((name for name in self._contacts if name not in self._open), None)
             if idle is None:
-                raise InputError("session", f"{self._most} pages are open, no more are served; close one, and reload")
+                words = f"{protocol.MOST_SESSIONS} pages are open, no more are served; close one, and reload"
+                raise InputError("session", words)
             del self._contacts[idle], self._turns[idle]
 
     def add(self, contact: LiveContact) -> str:
@@ -201,10 +197,6 @@ class Server:
     ----------
     make : callable
         ``make()`` returns the contact of a new page.
-    host : str
-        The address of this machine on which the server listens. At another one than :data:`ADDRESS` it shares the page:
-        others may open it, and the page shows its address as a QR code.
-    limits : Limits
     clock : callable
         ``clock()`` returns seconds. Rates of messages and turns of pages are measured with it.
 
@@ -216,18 +208,11 @@ class Server:
         The address of the page; "" before :meth:`take_port`.
     """
 
-    def __init__(
-        self,
-        make: Callable[[], LiveContact],
-        host: str = "",
-        limits: Limits = ALONE,
-        clock: Callable[[], float] = time.monotonic,
-    ) -> None:
+    def __init__(self, make: Callable[[], LiveContact], clock: Callable[[], float] = time.monotonic) -> None:
         self.token = secrets.token_urlsafe(TOKEN_BYTES)
         self.address = ""
         self._hosts: tuple[str, ...] = ()
-        self._make, self._sessions = make, Sessions(limits.sessions)
-        self._host, self._shared, self._limits, self._clock = host or ADDRESS, bool(host), limits, clock
+        self._make, self._sessions, self._clock = make, Sessions(), clock
         self._greeting = asyncio.Lock()
         self._files = page_files()
         self._page, self._map = live_page()
@@ -242,16 +227,15 @@ class Server:
         Raises
         ------
         InputError
-            If the address or the port can't be used.
+            If the port can't be used.
         """
         application = web.Application(client_max_size=MOST_BYTES, middlewares=[self._guard])
         application.router.add_get("/{token}/", self._send_page)
         application.router.add_get("/{token}/socket", self._talk)
-        application.router.add_get("/{token}/code.svg", self._send_code)
         application.router.add_get("/{token}/save/{session}/{file}", self._save)
         application.router.add_get("/{token}/{file:.*}", self._send_file)
         runner = web.AppRunner(application, access_log=None, logger=requests_log, shutdown_timeout=LAST_WAIT)
-        listening = bound_socket(self._host, port, self._limits.connections)
+        listening = bound_socket(port)
         try:
             await runner.setup()
             self.take_port(listening.getsockname()[1])
@@ -266,11 +250,8 @@ class Server:
 
     def take_port(self, port: int) -> None:
         """Take the address with this port as that of the page."""
-        names = [f"[{self._host}]" if ":" in self._host else self._host]
-        if self._host == ADDRESS:
-            names.append("localhost")
         # Browsers leave port 80 out of the Host.
-        self._hosts = tuple(name if port == 80 else f"{name}:{port}" for name in names)
+        self._hosts = tuple(name if port == 80 else f"{name}:{port}" for name in (ADDRESS, "localhost"))
         self.address = f"http://{self._hosts[0]}/{self.token}/"
 
     # -- requests --------------------------------------------------------------------------------------------------
@@ -315,14 +296,6 @@ class Server:
         if found is None:
             return _refused(404, "There is no such file.")
         return web.Response(body=found[0], content_type=found[1], charset="utf-8")
-
-    async def _send_code(self, request: web.Request) -> web.Response:
-        """Send the QR code of the page's address."""
-        if not self._shared:
-            return _refused(404, "There is no such file.")
-        drawing = io.BytesIO()
-        segno.make(self.address, micro=False).save(drawing, kind="svg", light="white", xmldecl=False)
-        return web.Response(body=drawing.getvalue(), content_type="image/svg+xml")
 
     async def _save(self, request: web.Request) -> web.Response:
         """Send the history of a page as a case file, or as a recording."""
@@ -381,9 +354,9 @@ class Server:
 
     async def serve_page(self, page: web.WebSocketResponse) -> None:
         """Serve a page until it has gone. If too many are open, tell it so, and close it."""
-        if self._connections >= self._limits.connections:
+        if self._connections >= protocol.MOST_CONNECTIONS:
             # A page can read messages, but not why a websocket was refused.
-            sentence = f"{self._limits.connections} pages are open, no more are served; close one, and reload"
+            sentence = f"{protocol.MOST_CONNECTIONS} pages are open, no more are served; close one, and reload"
             await _send(page, refusal(None, InputError("connection", sentence)))
             await page.close(code=WSCloseCode.TRY_AGAIN_LATER)
             return
@@ -461,10 +434,7 @@ class Server:
                 self._sessions.make_room()
                 name = self._sessions.add(await self._compute(self._make))
             mailbox.session = name
-        shared = self.address if self._shared else ""
-        await _send(
-            page, {"kind": "welcome", "id": message.id, "session": name, "version": __version__, "shared": shared}
-        )
+        await _send(page, {"kind": "welcome", "id": message.id, "session": name, "version": __version__})
 
 
 def _answers(
@@ -509,62 +479,27 @@ def _refused(status: int, sentence: str) -> web.Response:
     return web.Response(status=status, text=f"{sentence}\n", headers=HEADERS)
 
 
-def address_of_machine(host: str) -> str:
-    """Return an address of this machine in numbers, as browsers write it.
+def bound_socket(port: int) -> socket.socket:
+    """A socket on a port of this machine; 0 means any free one.
 
     Raises
     ------
     InputError
-        If it is no single address.
+        If the port can't be used.
     """
-    try:
-        found = ipaddress.ip_address(any_text("host", host))
-    except ValueError:
-        found = None
-    if found is None or found.is_unspecified or found.is_multicast or "%" in host:
-        raise InputError("host", f"must be one address of this machine in numbers{_such_as()}, not {as_toml(host)}")
-    return str(found)
-
-
-def _such_as() -> str:
-    """Return a sentence's part with the address of this machine in its network, or "" without one."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asking:
-        try:
-            asking.connect(("192.0.2.1", 9))  # an address of nobody, for the routing table; nothing is sent
-        except OSError:
-            return ""
-        return f", such as {asking.getsockname()[0]}"
-
-
-def bound_socket(host: str, port: int, most: int) -> socket.socket:
-    """A socket on a port of an address of this machine; 0 means any free one. `most` connections may wait.
-
-    Raises
-    ------
-    InputError
-        If the address or the port can't be used.
-    """
-    found = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
+    found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
-        found.bind((host, port))
-        found.listen(most)
+        found.bind((ADDRESS, port))
+        found.listen(protocol.MOST_CONNECTIONS)
     except OSError as error:
         found.close()
-        if error.errno == errno.EADDRNOTAVAIL:
-            raise InputError("host", f"{host} is no address of this machine{_such_as()}") from None
         reason = (error.strerror or str(error)).lower()
         raise InputError("port", f"{port} can't be used: {reason}; choose another one, or leave it out") from None
     return found
 
 
-def serve(
-    make: Callable[[], LiveContact],
-    port: int,
-    ready: Callable[[str], None],
-    host: str = "",
-    limits: Limits = ALONE,
-) -> None:
+def serve(make: Callable[[], LiveContact], port: int, ready: Callable[[str], None]) -> None:
     """Serve the page until Ctrl-C.
 
     Parameters
@@ -575,18 +510,15 @@ def serve(
         0 means any free port.
     ready : callable
         ``ready(address)`` is called once the page can be opened.
-    host : str
-        An address of this machine, at which others may open the page. "" shares it with nobody.
-    limits : Limits
 
     Raises
     ------
     InputError
-        If the address or the port can't be used.
+        If the port can't be used.
     """
 
     async def run() -> None:
-        async with Server(make, host, limits).running(port) as server:
+        async with Server(make).running(port) as server:
             ready(server.address)
             await asyncio.Event().wait()
 

@@ -28,7 +28,6 @@ from fastpin import casefile
 from fastpin.bodies import Ring
 from fastpin.live.contact import LiveContact
 from fastpin.live.pictures import CURVE_ERROR
-from fastpin.live.protocol import CLASS
 from fastpin.live.recording import record_life, record_page
 from fastpin.live.server import Server
 from fastpin.model.units import units
@@ -502,18 +501,6 @@ def test_a_prescribed_rotation_and_its_kind_have_controls_of_their_own(opened: O
     tab = opened(text)
     assert tab.value("field-rotation") == "1.000"
     assert tab.run("return document.querySelector(`select[data-key='rotation']`).value") == "fixed"
-
-
-def test_a_shared_page_shows_its_qr_code(chrome: webdriver.Chrome, server: Server) -> None:
-    assert not Tab(chrome, server).run("return document.getElementById('share').offsetWidth")
-    with served(lambda: contact(nodes=61, limits=CLASS), host="127.0.0.1", limits=CLASS) as running:
-        tab = Tab(chrome, running)
-        tab.click("share")
-        tab.wait("return document.getElementById('code').naturalWidth > 20")
-        assert tab.text("shared") == running.address
-        tab.click("shared-close")
-        choices = tab.run("return [...document.querySelector(`[data-key='nodes']`).options].map((one) => one.value)")
-        assert choices == ["61", "100", "200", "400"]
 
 
 @pytest.mark.parametrize("width", [420, 360])

@@ -17,9 +17,9 @@ from fastpin import casefile
 from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.elasticity.system import System
 from fastpin.live import contact as contact_module
+from fastpin.live import protocol
 from fastpin.live.contact import LiveContact
 from fastpin.live.pictures import CURVE_ERROR
-from fastpin.live.protocol import ALONE, CLASS, Limits
 from fastpin.model import About, InitialGap, Profile, Wear
 from fastpin.model.angles import angle_at
 from fastpin.states.curves import traction_patches
@@ -235,8 +235,11 @@ SENT = [(None, {}), (None, {"pin_bore": 4e-3}), (None, {"plate_body": "ring"}), 
 
 @pytest.mark.gate
 @pytest.mark.parametrize(("text", "changes"), some_survey(SENT, SENT[-1]))
-def test_every_control_can_be_sent_back_unchanged(text: str | None, changes: dict[str, Any]) -> None:
-    page = Page(contact(text, nodes=21, limits=Limits(nodes=21)))
+def test_every_control_can_be_sent_back_unchanged(
+    text: str | None, changes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(protocol, "MOST_NODES", 21)
+    page = Page(contact(text, nodes=21))
     if changes:
         page.tell("change", changes=changes)
     before = page.live.session.problem
@@ -408,7 +411,7 @@ def test_a_case_that_fails_at_once_says_why() -> None:
 def test_a_narrow_contact_gets_more_nodes_until_it_is_wide_again() -> None:
     page = Page(contact(FREE, 101))
     page.tell("change", changes={"clearance": 2e-4})
-    assert 101 < page.live.session.grid.size < ALONE.nodes
+    assert 101 < page.live.session.grid.size < protocol.MOST_NODES
     assert np.count_nonzero(page.live.session.state.pressure) >= contact_module.LEAST_CLOSED
     page.tell("change", changes={"clearance": 1e-5})
     assert page.live.session.grid.size == 101
@@ -419,9 +422,10 @@ def test_a_narrow_contact_gets_more_nodes_until_it_is_wide_again() -> None:
     assert (page.live.session.grid.size, page.latest["case"]["nodes"]) == (101, 101)
 
 
-def test_a_contact_too_narrow_for_the_circle_gets_nodes_of_its_own() -> None:
+def test_a_contact_too_narrow_for_the_circle_gets_nodes_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(protocol, "MOST_NODES", 41)
     text = FREE.replace("clearance = 1e-5", "clearance = 1e-3").replace("P = 1e6", "P = 1e4")
-    page = Page(contact(text, 41, Limits(nodes=41)))
+    page = Page(contact(text, 41))
     assert page.latest["sentence"] == ""
     session = page.live.session
     assert np.count_nonzero(session.state.pressure) > 5
@@ -457,8 +461,9 @@ def test_a_new_page_gets_the_whole_history() -> None:
 
 @pytest.mark.gate
 def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(contact_module, "MOST_UNDONE", 7)
-    page = Page(contact(nodes=21, limits=Limits(pictures=5)))
+    monkeypatch.setattr(protocol, "MOST_UNDONE", 7)
+    monkeypatch.setattr(protocol, "MOST_PICTURES", 5)
+    page = Page(contact(nodes=21))
     drag(page, 5, 8)
     assert len(page.pictures) == 5
     assert len(page.live.session.history) == 9
@@ -472,7 +477,8 @@ def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch)
     assert page.live.session.state is not None
     page.tell("load", loads={"Q": 5.0}, gesture=1)
     assert page.pictures[-1]["load"]["Q"] == 5.0
-    page = Page(contact(limits=Limits(undone_nodes=5 * NODES)))
+    monkeypatch.setattr(protocol, "MOST_UNDONE_NODES", 5 * NODES)
+    page = Page(contact())
     for k in range(8):
         page.tell("load", loads={"Q": 1e4 * k}, gesture=k)
     assert page.latest["undos"] == 5  # they have few nodes together
@@ -569,7 +575,7 @@ def test_gestures_that_can_be_undone_hold_no_matrices(frozen: None) -> None:
 @pytest.mark.parametrize("load", [{"P": P}, {"P": -P}, {"P": 0.0, "Q": P}, {"P": 0.0, "Q": -P}])
 def test_a_symmetric_load_turns_the_pin_by_rounding_only(load: dict[str, float]) -> None:
     """With 201 nodes none stands at the bottom: one of its neighbours closed first, and the pin turned by 28 nrad."""
-    assert contact_module.NODES % 4 == contact_module.NODES_OF_CLASS % 4 == 0
+    assert contact_module.NODES % 4 == 0
     page = Page(contact(nodes=contact_module.NODES))
     page.tell("reset")
     page.tell("load", loads=load)
@@ -608,13 +614,6 @@ def test_curves_across_the_top_have_a_part_at_either_end() -> None:
     degrees = floats(page.pictures[-1]["curves"]["degrees"])
     assert not np.isnan(degrees).any()
     assert np.all(np.diff(degrees) >= 0.0)
-
-
-def test_a_class_has_fewer_nodes() -> None:
-    page = Page(contact(nodes=41, limits=CLASS))
-    assert page.latest["case"]["most_nodes"] == CLASS.nodes
-    assert page.tell("nodes", nodes=CLASS.nodes + 1)["sentence"] == "nodes: must be at most 400 on this page, not 401"
-    assert page.live.session.grid.size <= CLASS.nodes
 
 
 LAMINATE = """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import io
 import re
 import select
 import socket
@@ -14,23 +13,17 @@ from typing import Any
 
 import aiohttp
 import pytest
-import segno
 from aiohttp import web
 
 from fastpin import casefile
 from fastpin.cli.main import main
-from fastpin.errors import InputError
 from fastpin.live import server as server_module
 from fastpin.live.page import page_files
-from fastpin.live.protocol import CLASS
 from fastpin.live.server import Server
 from tests.support.live_pages import LIMIT, Talk, contact, served
 from tests.support.processes import fastpin, started
 
 pytestmark = pytest.mark.gate
-
-SHARED = "127.0.0.3"
-"""An address that reaches this machine only, and is another one than that of a page for oneself."""
 
 OPENED: list[aiohttp.ClientWebSocketResponse] = []
 """The websockets of a test. They are closed at its end."""
@@ -39,12 +32,6 @@ OPENED: list[aiohttp.ClientWebSocketResponse] = []
 @pytest.fixture(scope="module")
 def server() -> Iterator[Server]:
     with served(lambda: contact(nodes=21)) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
-def shared() -> Iterator[Server]:
-    with served(lambda: contact(nodes=21, limits=CLASS), host=SHARED, limits=CLASS) as running:
         yield running
 
 
@@ -137,55 +124,34 @@ def test_paths_lead_to_the_listed_files_only(server: Server) -> None:
         assert b"import" not in answer, path
 
 
-def test_foreign_requests_are_refused(server: Server, shared: Server) -> None:
+def test_foreign_requests_are_refused(server: Server) -> None:
     """test_talks.py asks for many more of them without a network."""
-    for running in (server, shared):
-        host, port = host_of(running).split(":")
-        status, text, _ = get(running.address, Host="example.org")
-        assert (status, text) == (403, "This server answers to its own address only.\n")
-        status, text, _ = get(running.address, Origin="http://example.org")
-        assert (status, text) == (403, "Another page may not use this server.\n")
-        assert get(running.address, Host=f"localhost:{port}")[0] == (200 if host == "127.0.0.1" else 403)
-        wrong, missing = (running.address.replace(f"{running.token}/", other) for other in ("x/", ""))
-        for address in (wrong, missing, f"{wrong}main.js", f"{wrong}code.svg", f"{missing}socket"):
-            status, text, _ = get(address)
-            assert (status, text.startswith("The address lacks the token: ")) == (403, True)
-        own = f"http://{host}:{port}"
-        two = f"Host: {host}:{port}", f"Origin: {own}", "Origin: http://example.org"
-        lines = f"GET /{running.token}/ HTTP/1.1", *two, "Connection: close", "", ""
-        answer = replied(running, "\r\n".join(lines).encode())
-        assert answer.split(b" ")[1] == b"403"
-        for address, origin in ((f"{running.address}socket", "http://example.org"), (f"{wrong}socket", own)):
-            assert ask(partial(refused_status, address=address, origin=origin)) == 403
-        assert get(f"{running.address}socket")[:2] == (403, "Only the page may use this server.\n")
+    host, port = host_of(server).split(":")
+    status, text, _ = get(server.address, Host="example.org")
+    assert (status, text) == (403, "This server answers to its own address only.\n")
+    status, text, _ = get(server.address, Origin="http://example.org")
+    assert (status, text) == (403, "Another page may not use this server.\n")
+    assert get(server.address, Host=f"localhost:{port}")[0] == 200
+    wrong, missing = (server.address.replace(f"{server.token}/", other) for other in ("x/", ""))
+    for address in (wrong, missing, f"{wrong}main.js", f"{missing}socket"):
+        status, text, _ = get(address)
+        assert (status, text.startswith("The address lacks the token: ")) == (403, True)
+    own = f"http://{host}:{port}"
+    two = f"Host: {host}:{port}", f"Origin: {own}", "Origin: http://example.org"
+    lines = f"GET /{server.token}/ HTTP/1.1", *two, "Connection: close", "", ""
+    answer = replied(server, "\r\n".join(lines).encode())
+    assert answer.split(b" ")[1] == b"403"
+    for address, origin in ((f"{server.address}socket", "http://example.org"), (f"{wrong}socket", own)):
+        assert ask(partial(refused_status, address=address, origin=origin)) == 403
+    assert get(f"{server.address}socket")[:2] == (403, "Only the page may use this server.\n")
 
 
-def test_the_server_listens_at_its_address_only(server: Server, shared: Server) -> None:
+def test_the_server_listens_at_its_address_only(server: Server) -> None:
     port = int(host_of(server).split(":")[1])
     others = {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), port, socket.AF_INET)}
     for address in {str(other) for other in others if not str(other).startswith("127.")}:
         with pytest.raises(OSError, match=r"refused|timed out"):
             socket.create_connection((address, port), 2.0)
-    with pytest.raises(ConnectionRefusedError):
-        socket.create_connection(("127.0.0.1", int(host_of(shared).split(":")[1])), LIMIT)
-
-
-def test_an_address_of_the_sixth_version_stands_in_brackets() -> None:
-    try:
-        with served(lambda: contact(nodes=21), host="::1", limits=CLASS) as running:
-            assert running.address.startswith("http://[::1]:")
-            assert get(running.address)[0] == 200
-    except InputError as error:
-        pytest.skip(str(error))
-
-
-def test_the_qr_code_is_that_of_the_address(server: Server, shared: Server) -> None:
-    status, text, headers = get(f"{shared.address}code.svg")
-    assert (status, headers["Content-Type"]) == (200, "image/svg+xml")
-    path = io.BytesIO()
-    segno.make(shared.address, micro=False).save(path, kind="svg", light="white", xmldecl=False)
-    assert text == path.getvalue().decode()
-    assert get(f"{server.address}code.svg")[0] == 404  # a page for oneself is not shared
 
 
 MALFORMED = [
@@ -221,22 +187,21 @@ def test_an_error_of_a_handler_is_logged(monkeypatch: pytest.MonkeyPatch, caplog
 # -- talks; test_talks.py has more of them without a network -----------------------------------------------------------
 
 
-def test_a_history_is_led_and_saved_as_files(server: Server, shared: Server) -> None:
+def test_a_history_is_led_and_saved_as_files(server: Server) -> None:
     async def work(client: aiohttp.ClientSession) -> str:
-        talk = await connect(client, running)
+        talk = await connect(client, server)
         name, first = await talk.hello()
         assert len(first["add"]) == 1
         assert (await talk.load(3e5))["add"][0]["load"]["Q"] == 3e5
         return name
 
-    for running in (server, shared):
-        name = ask(work)
-        status, text, headers = get(f"{running.address}save/{name}/case.toml")
-        assert status == 200
-        assert headers["Content-Disposition"] == 'attachment; filename="case.toml"'
-        assert casefile.parse_case(text).history.values()[-1, 1] == 3e5
-        status, text, _ = get(f"{running.address}save/{name}/recording.html")
-        assert (status, 'id="recording"' in text) == (200, True)
+    name = ask(work)
+    status, text, headers = get(f"{server.address}save/{name}/case.toml")
+    assert status == 200
+    assert headers["Content-Disposition"] == 'attachment; filename="case.toml"'
+    assert casefile.parse_case(text).history.values()[-1, 1] == 3e5
+    status, text, _ = get(f"{server.address}save/{name}/recording.html")
+    assert (status, 'id="recording"' in text) == (200, True)
 
 
 def test_a_message_of_10_mb_ends_its_connection_only(server: Server) -> None:
@@ -289,11 +254,6 @@ def test_a_port_in_use_is_refused_with_one_sentence(server: Server, capsys: pyte
     assert main(["live", "--no-browser", "--port", port]) == 2
     sentence = f"fastpin: --port: {port} can't be used: address already in use; choose another one, or leave it out\n"
     assert capsys.readouterr().err == sentence
-
-
-def test_an_address_of_another_machine_is_refused_in_one_sentence(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["live", "--no-browser", "--host", "203.0.113.7"]) == 2
-    assert "--host: 203.0.113.7 is no address of this machine" in capsys.readouterr().err
 
 
 def test_ctrl_c_ends_the_server() -> None:

@@ -13,13 +13,13 @@ from aiohttp import WSCloseCode, WSMsgType
 
 from fastpin import casefile
 from fastpin.errors import InputError
+from fastpin.live import protocol
 from fastpin.live.contact import LiveContact
 from fastpin.live.page import page_files
-from fastpin.live.protocol import MOST_A_SECOND, MOST_BYTES, MOST_WAITING, Limits, Message
+from fastpin.live.protocol import MOST_A_SECOND, MOST_BYTES, MOST_WAITING, Message
 from fastpin.live.server import TURN, Mailbox, Server
 from tests.support.live_pages import HeldSteps, Talk, Wire, contact, in_a_loop
 
-SHARED = "127.0.0.3"
 TOKENLESS = "The address lacks the token: take the address that fastpin live has printed."
 
 
@@ -49,14 +49,10 @@ async def follow(talk: Talk) -> int:
 
 
 @pytest.mark.parametrize(
-    ("host", "port", "own"),
-    [
-        ("", 8000, ["127.0.0.1:8000", "localhost:8000"]), ("", 80, ["127.0.0.1", "localhost"]),
-        (SHARED, 8000, [f"{SHARED}:8000"]), ("::1", 8000, ["[::1]:8000"]),
-    ],
-)  # fmt: skip
-def test_a_request_needs_the_address_the_page_and_the_token(host: str, port: int, own: list[str]) -> None:
-    server = Server(small, host)
+    ("port", "own"), [(8000, ["127.0.0.1:8000", "localhost:8000"]), (80, ["127.0.0.1", "localhost"])]
+)
+def test_a_request_needs_the_address_the_page_and_the_token(port: int, own: list[str]) -> None:
+    server = Server(small)
     server.take_port(port)
     assert server.address == f"http://{own[0]}/{server.token}/"
     pages = [f"http://{name}" for name in own]
@@ -67,19 +63,17 @@ def test_a_request_needs_the_address_the_page_and_the_token(host: str, port: int
         for origin in ("http://example.org", "null", f"https://{name}", name, "", f"http://{name}:1"):
             for origins in ([origin], [pages[0], origin]):
                 assert server.objection(name, origins, server.token) == "Another page may not use this server."
-    known = {"127.0.0.1", "127.0.0.1:8000", "127.0.0.1:1", "localhost", "localhost:8000", SHARED, "0.0.0.0:8000"}
+    known = {
+        "127.0.0.1",
+        "127.0.0.1:8000",
+        "127.0.0.1:1",
+        "localhost",
+        "localhost:8000",
+        "127.0.0.3:8000",
+        "0.0.0.0:8000",
+    }
     for other in (None, "", "example.org", *known - set(own)):
         assert server.objection(other, [], server.token) == "This server answers to its own address only."
-
-
-@in_a_loop
-async def test_only_a_shared_page_is_told_its_address() -> None:
-    for host in ("", SHARED):
-        server = Server(small, host)
-        server.take_port(8000)
-        talk = Wire(server)
-        await talk.send("hello", session="")
-        assert (await talk.hear())["shared"] == (server.address if host else "")
 
 
 def test_no_file_of_the_page_names_another_address() -> None:
@@ -204,10 +198,10 @@ async def test_a_page_that_comes_back_finds_its_contact() -> None:
 
 
 @in_a_loop
-async def test_too_many_visitors_are_refused_and_the_others_go_on() -> None:
-    few = Limits(connections=5, sessions=3)
-
-    server = Server(lambda: contact(nodes=21, limits=few), limits=few)
+async def test_too_many_pages_are_refused_and_the_others_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(protocol, "MOST_CONNECTIONS", 5)
+    monkeypatch.setattr(protocol, "MOST_SESSIONS", 3)
+    server = Server(small)
     talks = [Wire(server) for _ in range(3)]
     for talk in talks:
         await talk.hello()

@@ -78,7 +78,6 @@ HOMES = {
     "typst": ("pages",),
     "shtab": ("cli",),
     "aiohttp": ("live",),
-    "segno": ("live",),
     "ezdxf": ("lugs",),
 }
 """Packages that only some folders may import."""

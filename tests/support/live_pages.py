@@ -20,7 +20,7 @@ from aiohttp import WSMessage, WSMsgType
 import fastpin
 from fastpin import casefile
 from fastpin.live.contact import LiveContact
-from fastpin.live.protocol import ALONE, Limits, Message, read_message
+from fastpin.live.protocol import Message, read_message
 from fastpin.live.server import Server
 from tests.support.case_texts import PRESSED
 from tests.support.processes import LONGEST
@@ -35,9 +35,9 @@ FREE = PRESSED
 """The text of a case with a free pin."""
 
 
-def contact(text: str | None = None, nodes: int = NODES, limits: Limits = ALONE) -> LiveContact:
+def contact(text: str | None = None, nodes: int = NODES) -> LiveContact:
     """Return the contact of the built-in case, or of a case's text."""
-    return LiveContact(casefile.builtin_case() if text is None else casefile.parse_case(text), nodes, limits)
+    return LiveContact(casefile.builtin_case() if text is None else casefile.parse_case(text), nodes)
 
 
 def message(kind: str, number: int = 1, **fields: Any) -> Message:
@@ -211,11 +211,9 @@ class HeldSteps:
 
 
 @contextlib.contextmanager
-def served(
-    make: Callable[[], LiveContact] = contact, port: int = 0, host: str = "", limits: Limits = ALONE
-) -> Iterator[Server]:
+def served(make: Callable[[], LiveContact] = contact, port: int = 0) -> Iterator[Server]:
     """Run a server in a thread of its own."""
-    server, ready, failed = Server(make, host, limits), threading.Event(), []
+    server, ready, failed = Server(make), threading.Event(), []
     loop = asyncio.new_event_loop()
     end = asyncio.Event()
 

@@ -105,8 +105,6 @@ function say(sentence, kind = "") {
 
 function news(answer) {
   if (answer.kind === "welcome") {
-    at("share").hidden = !answer.shared;
-    at("shared").textContent = at("shared").href = answer.shared;
     return;
   }
   if (answer.kind === "pictures") {
@@ -194,11 +192,6 @@ function listen() {
   for (const [id, name] of [["play-case", "playCase"], ["play-cycle", "playCycle"], ["play-turn", "playTurn"], ["play-two", "playTwo"]]) {
     click(id, () => { before(); player[name](); });
   }
-  click("share", () => {
-    at("code").src = "code.svg";
-    at("sharing").showModal();
-  });
-  click("shared-close", () => at("sharing").close());
   click("stop", () => { player.stop(); link.stop(); });
 }
 
