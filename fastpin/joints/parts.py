@@ -10,26 +10,11 @@ from itertools import combinations
 
 from fastpin.errors import InputError
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad
-from fastpin.model.checks import (
-    as_toml,
-    check_fields,
-    choice,
-    instance,
-    instances,
-    is_above,
-    items,
-    known_name,
-    not_negative,
-    number,
-    point,
-    set_fields,
-    string,
-)
+from fastpin.model import checks, unit_systems
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
 from fastpin.model.read_only import ReadOnlyDict
-from fastpin.model.unit_systems import SI, checked_system
 
 MOST_PINS, MOST_PLATES = 40, 20
 """Most pins and plates of a joint."""
@@ -85,15 +70,17 @@ class JointPlate:
     loads: tuple[PartLoad, ...] = ()
 
     def __post_init__(self) -> None:
-        check_fields(self, _name, "name")
-        instance("material", self.material, Material, "a Material")
-        check_fields(self, number, "thickness", LEAST_RADIUS, MOST_RADIUS)
-        set_fields(self, outline=tuple(instances("outline", self.outline, Part, "a list of parts")))
-        set_fields(self, holes=tuple(instances("holes", self.holes, Hole, "a list of holes")))
-        set_fields(self, loads=tuple(instances("loads", self.loads, PartLoad, "a list of loads")))
+        checks.check_fields(self, _name, "name")
+        checks.instance("material", self.material, Material, "a Material")
+        checks.check_fields(self, checks.number, "thickness", LEAST_RADIUS, MOST_RADIUS)
+        checks.set_fields(self, outline=tuple(checks.instances("outline", self.outline, Part, "a list of parts")))
+        checks.set_fields(self, holes=tuple(checks.instances("holes", self.holes, Hole, "a list of holes")))
+        checks.set_fields(self, loads=tuple(checks.instances("loads", self.loads, PartLoad, "a list of loads")))
         if not isinstance(self.supports, Mapping):
-            raise InputError("supports", f"must map names to words, not {as_toml(self.supports)}")
-        set_fields(self, supports=ReadOnlyDict(self.supports), moves=choice("moves", self.moves, tuple(MOVES)))
+            raise InputError("supports", f"must map names to words, not {checks.as_toml(self.supports)}")
+        checks.set_fields(
+            self, supports=ReadOnlyDict(self.supports), moves=checks.choice("moves", self.moves, tuple(MOVES))
+        )
         if self.is_infinite:
             for key in ("supports", "moves", "holes", "loads"):
                 if getattr(self, key):
@@ -124,7 +111,7 @@ class JointPlate:
 
         `centres` are those of the pinned holes, m, and `radius` is theirs.
         """
-        centres = [point("centres", each) for each in items("centres", centres, "a list of points")]
+        centres = [checks.point("centres", each) for each in checks.items("centres", centres, "a list of points")]
         if not centres:
             raise InputError("centres", "must have at least one point")
         first = centres[0]
@@ -190,34 +177,37 @@ class JointPin:
     flexibility: float = 0.0
 
     def __post_init__(self) -> None:
-        check_fields(self, _name, "name")
-        check_fields(self, point, "at")
-        instance("material", self.material, Material, "a Material")
-        check_fields(self, number, "radius", LEAST_RADIUS, MOST_RADIUS)
-        set_fields(
-            self, plates=tuple(string("plates", name) for name in items("plates", self.plates, "a list of names"))
+        checks.check_fields(self, _name, "name")
+        checks.check_fields(self, checks.point, "at")
+        checks.instance("material", self.material, Material, "a Material")
+        checks.check_fields(self, checks.number, "radius", LEAST_RADIUS, MOST_RADIUS)
+        checks.set_fields(
+            self,
+            plates=tuple(
+                checks.string("plates", name) for name in checks.items("plates", self.plates, "a list of names")
+            ),
         )
         if not self.plates:
             raise InputError("plates", f"pin {self.name} goes through no plate")
         if len(set(self.plates)) < len(self.plates):
             raise InputError("plates", f"pin {self.name} goes through a plate twice")
-        check_fields(self, not_negative, "flexibility")
+        checks.check_fields(self, checks.not_negative, "flexibility")
         for name in ("clearance", "friction"):
             value = getattr(self, name)
             if isinstance(value, Mapping):
                 for plate, each in value.items():
-                    known_name(name, plate, self.plates)
-                    number(f"{name}.{plate}", each)
+                    checks.known_name(name, plate, self.plates)
+                    checks.number(f"{name}.{plate}", each)
                 if missing := [plate for plate in self.plates if plate not in value]:
                     raise InputError(name, f"has no value for the plate {missing[0]}")
-                set_fields(self, **{name: ReadOnlyDict(value)})
+                checks.set_fields(self, **{name: ReadOnlyDict(value)})
             else:
-                check_fields(self, number, name)
+                checks.check_fields(self, checks.number, name)
 
     def value_in(self, name: str, plate: str) -> float:
         """The clearance or the friction in a plate."""
-        known_name("plate", plate, self.plates)
-        value = getattr(self, choice("name", name, ("clearance", "friction")))
+        checks.known_name("plate", plate, self.plates)
+        value = getattr(self, checks.choice("name", name, ("clearance", "friction")))
         return float(value[plate] if isinstance(value, Mapping) else value)
 
 
@@ -242,22 +232,22 @@ class Joint:
     plates: tuple[JointPlate, ...]
     pins: tuple[JointPin, ...]
     plane: Plane = "stress"
-    unit_system: str = SI
+    unit_system: str = unit_systems.SI
 
     def __post_init__(self) -> None:
-        check_fields(self, checked_system, "unit_system")
-        set_fields(self, plates=tuple(instances("plates", self.plates, JointPlate, "a list of plates")))
-        set_fields(self, pins=tuple(instances("pins", self.pins, JointPin, "a list of pins")))
-        check_fields(self, choice, "plane", PLANES)
+        checks.check_fields(self, unit_systems.checked_system, "unit_system")
+        checks.set_fields(self, plates=tuple(checks.instances("plates", self.plates, JointPlate, "a list of plates")))
+        checks.set_fields(self, pins=tuple(checks.instances("pins", self.pins, JointPin, "a list of pins")))
+        checks.check_fields(self, checks.choice, "plane", PLANES)
         for kind, most, count in (("plates", MOST_PLATES, len(self.plates)), ("pins", MOST_PINS, len(self.pins))):
             if not 1 <= count <= most:
                 raise InputError(kind, f"must be 1 to {most}, not {count}")
         names = [*(plate.name for plate in self.plates), *(pin.name for pin in self.pins)]
         if twice := [name for name in names if names.count(name) > 1]:
-            raise InputError("name", f"two parts are called {as_toml(twice[0])}")
+            raise InputError("name", f"two parts are called {checks.as_toml(twice[0])}")
         for pin in self.pins:
             for name in pin.plates:
-                known_name("plates", name, names[: len(self.plates)])
+                checks.known_name("plates", name, names[: len(self.plates)])
             if not math.isclose(pin.radius, self.radius, rel_tol=1e-9):
                 words = f"all pins of a joint must have one radius: {pin.name} has {pin.radius:g} m"
                 raise InputError("radius", f"{words}, {self.pins[0].name} has {self.radius:g} m")
@@ -280,7 +270,7 @@ class Joint:
         least = 2.0 * LEAST_PITCH * self.radius
         for one, other in combinations(through, 2):
             apart = abs(one.at - other.at)
-            if is_above(least, apart):
+            if checks.is_above(least, apart):
                 words = f"the holes of {one.name} and {other.name} in {plate.name} are {apart:.4g} m apart"
                 raise InputError("at", f"{words}; they need {LEAST_PITCH:g} diameters, {least:.4g} m")
         if not plate.is_infinite:
@@ -299,8 +289,8 @@ class Joint:
 
     def place(self, pin: str, plate: str) -> int:
         """The place of a pin in a plate among the sections. Unknown names raise :class:`InputError`."""
-        known_name("pin", pin, [each.name for each in self.pins])
-        known_name("plate", plate, [each.name for each in self.plates])
+        checks.known_name("pin", pin, [each.name for each in self.pins])
+        checks.known_name("plate", plate, [each.name for each in self.plates])
         for place, (one, other) in enumerate(self.sections):
             if (one.name, other.name) == (pin, plate):
                 return place
@@ -314,13 +304,13 @@ class Joint:
 
     def is_stress(self, load: str) -> bool:
         """Whether a load is a stress, Pa. The others are forces, N."""
-        known_name("load", load, self.load_names)
+        checks.known_name("load", load, self.load_names)
         return load.rsplit(".", 1)[1] in REMOTE_NAMES
 
     def problem(self, pin: JointPin, plate: JointPlate) -> Problem:
         """The contact of a pin in one plate, as if that plate were infinite."""
-        instance("pin", pin, JointPin, "a JointPin")
-        instance("plate", plate, JointPlate, "a JointPlate")
+        checks.instance("pin", pin, JointPin, "a JointPin")
+        checks.instance("plate", plate, JointPlate, "a JointPlate")
         pair = MaterialPair(pin.material, plate.material, self.plane)
         try:
             return Problem(
@@ -351,13 +341,13 @@ def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], 
     InputError
         If a length is out of range, or an argument is of another class.
     """
-    d = number("diameter", diameter, LEAST_RADIUS, MOST_RADIUS)
-    instance("pin", pin, Material, "a Material")
+    d = checks.number("diameter", diameter, LEAST_RADIUS, MOST_RADIUS)
+    checks.instance("pin", pin, Material, "a Material")
     lengths = []
     for name, plate in (("one", one), ("other", other)):
         if not isinstance(plate, tuple) or len(plate) != 2 or not isinstance(plate[0], Material):
-            raise InputError(name, f"must be a material and a thickness in m, not {as_toml(plate)}")
-        lengths.append(number(name, plate[1], LEAST_RADIUS, MOST_RADIUS))
+            raise InputError(name, f"must be a material and a thickness in m, not {checks.as_toml(plate)}")
+        lengths.append(checks.number(name, plate[1], LEAST_RADIUS, MOST_RADIUS))
     a, b = lengths
     area, inertia = 0.25 * math.pi * d * d, math.pi * d**4 / 64.0
     shear = 4.0 * (a + b) / (9.0 * pin.shear_modulus * area)
@@ -367,7 +357,7 @@ def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], 
 
 def _name(field_: str, value: object) -> str:
     """Check a name: a text without a dot, which stands between a name and its load."""
-    name = string(field_, value)
+    name = checks.string(field_, value)
     if "." in name:
-        raise InputError(field_, f"must be a text without a dot, not {as_toml(value)}")
+        raise InputError(field_, f"must be a text without a dot, not {checks.as_toml(value)}")
     return name

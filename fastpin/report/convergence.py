@@ -16,20 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from fastpin.assess import outputs
-from fastpin.assess.outputs import (
-    NUMBER,
-    ROUNDING,
-    TEXT,
-    UNITS,
-    UNKNOWN,
-    WHOLE,
-    Column,
-    Output,
-    csv_cell,
-    list_of,
-    map_of,
-    table,
-)  # fmt: skip
 from fastpin.model.options import METHODS
 from fastpin.model.problem import Problem
 from fastpin.model.units import DEGREE, Unit, named_loads, printed_loads, units
@@ -106,7 +92,7 @@ class ReportedSeries:
             series.corner, name, label, unit.printed, tuple(map(in_report_units, series.values)), estimate.verdict,
             estimate.order, in_report_units(estimate.limit), unit.factor * reported_bar(estimate.bar), estimate.scatter,
             unit.factor * reported_bar(series.reference), in_report_units(series.path),
-            unit.factor * reported_bar(ROUNDING * series.size), outcome is not None,
+            unit.factor * reported_bar(outputs.ROUNDING * series.size), outcome is not None,
         )  # fmt: skip
 
     @property
@@ -137,7 +123,7 @@ def text(convergence: Convergence) -> str:
         parts.append(f"corner {corner}: {named_loads(convergence.problem, load)}")
         for study in convergence.studies:
             rows = reported_series(study, convergence.problem, corner)
-            head, _, *lines = table(series_columns(study, rows)).splitlines()  # units have a column, not a line
+            head, _, *lines = outputs.table(series_columns(study, rows)).splitlines()  # units have a column, not a line
             parts += [heading(study, convergence), "\n".join([head, *lines]), ""]
     legend = "bar: error bar of the last value; scatter: range of the last three values, relative to the value"
     legend += "\n(of places: to the width of the contact)"
@@ -155,7 +141,7 @@ def heading(study: Study, convergence: Convergence) -> str:
     return f"path solver; nodes on {where}:"
 
 
-def series_columns(study: Study, rows: Sequence[ReportedSeries]) -> list[Column]:
+def series_columns(study: Study, rows: Sequence[ReportedSeries]) -> list[outputs.Column]:
     """Return the columns of the table of a study: values, verdict, limit and error bar of each quantity."""
     cells = [_cells(row, study.method == "increment") for row in rows]
     names = ["quantity", "unit", *map(str, study.counts), "verdict", "limit", "bar", "path", "within"]
@@ -194,11 +180,11 @@ def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
 
 
 SERIES = (
-    Output("corner", "whole"),
-    Output("quantity", "text", lambda row: row.name),
-    Output("unit", "text", lambda row: row.unit.name),
-    Output("values", form=list_of(UNKNOWN)),
-    Output("verdict", "text"),
+    outputs.Output("corner", "whole"),
+    outputs.Output("quantity", "text", lambda row: row.name),
+    outputs.Output("unit", "text", lambda row: row.unit.name),
+    outputs.Output("values", form=outputs.list_of(outputs.UNKNOWN)),
+    outputs.Output("verdict", "text"),
     *outputs.numbers("order limit bar scatter path", optional=True),
 )
 """Outputs of a :class:`ReportedSeries`."""
@@ -215,27 +201,27 @@ def _with_series(convergence: Convergence) -> Iterator[tuple[Study, list[Reporte
 
 
 CONVERGENCE = (
-    Output("complete", "truth"),
-    Output("arc", form=list_of(NUMBER, 2)),
-    UNITS,
-    Output(
-        "loads", form=map_of(map_of(NUMBER, "loads"), "loads at each corner"),
+    outputs.Output("complete", "truth"),
+    outputs.Output("arc", form=outputs.list_of(outputs.NUMBER, 2)),
+    outputs.UNITS,
+    outputs.Output(
+        "loads", form=outputs.map_of(outputs.map_of(outputs.NUMBER, "loads"), "loads at each corner"),
         of=lambda found: {corner: printed_loads(found.problem, load) for corner, load in found.loads.items()},
     ),
-    Output("unread", form=map_of(TEXT, "why a quantity could not be read")),
-    Output(
+    outputs.Output("unread", form=outputs.map_of(outputs.TEXT, "why a quantity could not be read")),
+    outputs.Output(
         "studies", "list", _with_series,
         parts=(
-            Output("solver", "text", lambda each: each[0].method, allowed=METHODS),
-            Output(
+            outputs.Output("solver", "text", lambda each: each[0].method, allowed=METHODS),
+            outputs.Output(
                 "nodes", of=lambda each: each[0].counts if each[0].of_grids else each[0].nodes,
-                form={"type": ["array", "integer", "null"], "items": WHOLE},
+                form={"type": ["array", "integer", "null"], "items": outputs.WHOLE},
             ),
-            Output(
+            outputs.Output(
                 "increments", of=lambda each: None if each[0].of_grids else each[0].counts,
-                form={"type": ["array", "integer", "null"], "items": WHOLE},
+                form={"type": ["array", "integer", "null"], "items": outputs.WHOLE},
             ),
-            Output("quantities", "list", lambda each: each[1], parts=SERIES),
+            outputs.Output("quantities", "list", lambda each: each[1], parts=SERIES),
         ),
     ),
 )  # fmt: skip
@@ -263,7 +249,9 @@ def write_csv(convergence: Convergence, path: Path) -> None:
                     grid = (count, "") if study.of_grids else (study.nodes, count)
                     whole = cells | dict(zip(("nodes", "increments", "value"), (*grid, value), strict=True))
                     unknown = {name for name, cell in whole.items() if isinstance(cell, float) and math.isnan(cell)}
-                    writer.writerow({name: "" if name in unknown else csv_cell(whole[name]) for name in COLUMNS})
+                    writer.writerow(
+                        {name: "" if name in unknown else outputs.csv_cell(whole[name]) for name in COLUMNS}
+                    )
 
 
 def document(convergence: Convergence, title: str = "") -> dict[str, Any]:
