@@ -101,8 +101,7 @@ def _jobs(
     """Check the arguments, and return states, assessment, pairs of criterion and body, and the progress of each."""
     stops = stops_of_one_problem(states)
     how = FatigueAssessment() if how is None else instance("how", how, FatigueAssessment, "a FatigueAssessment")
-    if progress is not None:
-        check_callable("progress", progress)
+    check_callable("progress", progress)
     check_assessment(stops[0].problem, how)
     jobs = [
         (criterion, body) for criterion in how.criteria for body in assessed_bodies(stops[0].problem, how, criterion)
@@ -181,10 +180,8 @@ def _count_of_means(
         for k in range(theta.size):
             some = Points.at_depth(points.depth[k], points.theta[k])
             mean = np.zeros((len(different), 1, 4))
-            read = with_residual(
-                partial(history_blocks, different, some, body, straight), problem, body, some, residual
-            )
-            for part, history in read(lambda part: None):
+            blocks = partial(history_blocks, different, some, body, straight)
+            for part, history in with_residual(blocks, problem, body, some, residual)(lambda part: None):
                 mean[:, 0] += np.einsum("tqc,q->tc", history, weights[part])
             progress((k + 1) / theta.size)
             yield slice(k, k + 1), mean

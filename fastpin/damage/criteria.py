@@ -396,20 +396,21 @@ class FatigueCriterion(NamedTuple):
     counting: PlaneCount | None = None
 
 
-def _smith_watson_topper(history: np.ndarray, material: Material) -> CriterionValues:
-    found = smith_watson_topper(history, material.E, material.nu)
-    return _without_rounding(found, SWT_COUNT.natural(float(np.abs(history).max(initial=0.0)), material))
+def _with_lives(
+    name: str, kind: str, planes: Callable[..., Planes], counting: PlaneCount
+) -> tuple[str, FatigueCriterion]:
+    """Return name and criterion, from the planes of a history and of the constants of the parameter.
 
+    A parameter that is rounding beside its natural size is 0, without an angle.
+    """
 
-def _fatemi_socie(history: np.ndarray, material: Material, k: float, yield_strength: float) -> CriterionValues:
-    found = fatemi_socie(history, material.shear_modulus, k, yield_strength)
-    return _without_rounding(found, FS_COUNT.natural(float(np.abs(history).max(initial=0.0)), material))
+    def values(history: np.ndarray, material: Material, *constants: float) -> CriterionValues:
+        found = planes(history, material, *constants)
+        noise = found.parameter <= ROUNDING * counting.natural(float(np.abs(history).max(initial=0.0)), material)
+        return CriterionValues(np.where(noise, 0.0, found.parameter), np.where(noise, np.nan, found.angle), None)
 
-
-def _without_rounding(found: Planes, natural: float) -> CriterionValues:
-    """Planes with the parameter 0, and no angle, where the parameter is rounding beside its `natural` size."""
-    noise = found.parameter <= ROUNDING * natural
-    return CriterionValues(np.where(noise, 0.0, found.parameter), np.where(noise, np.nan, found.angle), None)
+    needs, life_needs = LIFE_CONSTANTS[name]
+    return name, FatigueCriterion(kind, needs, values, life_needs, counting)
 
 
 def _by_limits(
@@ -452,32 +453,21 @@ STRESS_COUNT = PlaneCount(
 
 _LIMITS = ("bending_limit", "torsion_limit")
 
-FATIGUE_CRITERIA: dict[str, FatigueCriterion] = {
-    "smith-watson-topper": FatigueCriterion(
-        "stress times strain",
-        LIFE_CONSTANTS["smith-watson-topper"][0],
-        _smith_watson_topper,
-        LIFE_CONSTANTS["smith-watson-topper"][1],
-        SWT_COUNT,
+FATIGUE_CRITERIA: dict[str, FatigueCriterion] = dict([
+    _with_lives(
+        "smith-watson-topper", "stress times strain",
+        lambda history, material: smith_watson_topper(history, material.E, material.nu), SWT_COUNT,
     ),
-    "fatemi-socie": FatigueCriterion(
-        "rotation",
-        LIFE_CONSTANTS["fatemi-socie"][0],
-        _fatemi_socie,
-        LIFE_CONSTANTS["fatemi-socie"][1],
-        FS_COUNT,
+    _with_lives(
+        "fatemi-socie", "rotation",
+        lambda history, material, *constants: fatemi_socie(history, material.shear_modulus, *constants), FS_COUNT,
     ),
-    "stress-life": FatigueCriterion(
-        "traction",
-        LIFE_CONSTANTS["stress-life"][0],
-        lambda history, _, m: _without_rounding(equivalent_stress(history, m), np.abs(history).max(initial=0.0)),
-        LIFE_CONSTANTS["stress-life"][1],
-        STRESS_COUNT,
-    ),
+    _with_lives("stress-life", "traction", lambda history, _, m: equivalent_stress(history, m), STRESS_COUNT),
+]) | {
     "findley": FatigueCriterion("traction", _LIMITS, _by_limits(findley, findley_limit)),
     "crossland": FatigueCriterion("traction", _LIMITS, _by_limits(crossland, crossland_limit)),
     "dang-van": FatigueCriterion("traction", _LIMITS, _by_limits(dang_van, dang_van_limit)),
-}
+}  # fmt: skip
 """The criteria by name."""
 
 

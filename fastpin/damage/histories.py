@@ -6,7 +6,7 @@ A residual hoop stress round a hole, as cold working leaves it, may be added.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -67,9 +67,7 @@ def stress_history(states: Sequence[State], points: Points, body: Body = "plate"
 def different_states(states: Sequence[State], straight: bool) -> tuple[list[State], np.ndarray]:
     """Return the states with different stresses, and the place of each state among them, int64, shape (states,)."""
     seen: dict[bytes, int] = {}
-    shared: dict[
-        tuple[float, tuple[int, ...]], bytes
-    ] = {}  # by the arrays of a state: repeated states often share them
+    shared: dict[Hashable, bytes] = {}  # by the arrays of a state: repeated states often share them
     different: list[State] = []
     order = np.empty(len(states), dtype=np.int64)
     for k, state in enumerate(states):

@@ -203,8 +203,7 @@ def least_strength(
     """
     checks.instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
     known = checks.instances("states", states, State, "a sequence of states")
-    if progress is not None:
-        checks.check_callable("progress", progress)
+    checks.check_callable("progress", progress)
     if not known:
         raise InputError("states", "must hold at least one state")
     if "distance" not in how.lengths:

@@ -281,13 +281,13 @@ def evaluated(
         material = isotropic_material("body", problem, part, CRITERION)
         given = (material.fatigue if constants is None else constants) or FatigueConstants()
         parts.append((chosen, _values(history[:, chosen], criterion, material, given, owner_of(problem, part))))
-    shape, limit = place[0].shape, parts[0][1].limit
-    parameter = _together([(chosen, one.parameter) for chosen, one in parts], shape)
-    plane = _together([(chosen, one.plane) for chosen, one in parts], shape)
-    life = _together([(chosen, one.life) for chosen, one in parts], shape)
-    limits = None if len(parts) == 1 else _together([(chosen, one.limit) for chosen, one in parts], shape)
+    parameter, plane, life, limits = (
+        _together([(chosen, getattr(one, name)) for chosen, one in parts], place[0].shape)
+        for name in ("parameter", "plane", "life", "limit")
+    )
     assert parameter is not None
-    return Fatigue(problem, criterion, body, *place, parameter, plane, life, limit if limits is None else limits)
+    limit = parts[0][1].limit if len(parts) == 1 else limits
+    return Fatigue(problem, criterion, body, *place, parameter, plane, life, limit)
 
 
 def bodies_at(problem: Problem, body: Body, depth: np.ndarray) -> list[tuple[np.ndarray, Body]]:

@@ -400,11 +400,8 @@ def stress_life(
     loads = numbers("amplitude", amplitude, 0.0, open_low=True)
     knee, cycles = positive("knee_amplitude", knee_amplitude), positive("knee_cycles", knee_cycles)
     above = number("slope", slope, 1.0)
-    below = (
-        math.inf
-        if isinstance(slope_below, float) and slope_below == math.inf
-        else number("slope_below", slope_below, 1.0)
-    )
+    has_limit = isinstance(slope_below, float) and slope_below == math.inf
+    below = math.inf if has_limit else number("slope_below", slope_below, 1.0)
     try:
         import pandas  # a dependency of pylife
         from pylife.materiallaws import WoehlerCurve

@@ -47,26 +47,21 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
                 limited = fatigue_of(states, "findley", body)
         one = next((one for one in known if not isinstance(one, str) and one.body == body), None)
         if limited is not None:
-            place = "" if math.isnan(limited.hot_spot.theta) else f"at {from_bottom(limited.hot_spot.theta):z.1f} deg"
+            spot, owner = limited.hot_spot, owner_of(problem, body)
+            place = "" if math.isnan(spot.theta) else f"at {from_bottom(spot.theta):z.1f} deg"
             limit = math.nan if limited.limit is None else float(limited.limit)
-            value = limited.hot_spot.parameter
-            owner = owner_of(problem, body)
-            row = Margin(f"{subject}, Findley", "traction", value, limit, remark=place, name="findley", owner=owner)
-            rows.append(row._replace(part=part_of(problem, owner)))
+            row = Margin(f"{subject}, Findley", "traction", spot.parameter, limit, remark=place, name="findley")
+            rows.append(row._replace(owner=owner, part=part_of(problem, owner)))
         elif one is None:
             why = known.rstrip(".") if isinstance(known, str) else "no constants of fatigue given"
             rows.append(Margin(subject, remark=f"not known: {why[0].lower()}{why[1:]}"))
         else:
-            remark = (
-                f"not known: a margin needs Findley's bending_limit and torsion_limit of the {owner_of(problem, body)}"
-            )
-            life = one.hot_spot.life
+            life, owner = one.hot_spot.life, owner_of(problem, body)
+            remark = f"not known: a margin needs Findley's bending_limit and torsion_limit of the {owner}"
             if not math.isnan(life):
                 remark += f"; life {life:.3g} cycles" if math.isfinite(life) else "; infinite life"
-            kind = "stress times strain"
-            owner, value = owner_of(problem, body), one.hot_spot.parameter
             words = f"{subject}, {criterion_title(one.criterion)}"
-            rows.append(Margin(words, kind, value, remark=remark, owner=owner))
+            rows.append(Margin(words, one.kind, one.hot_spot.parameter, remark=remark, owner=owner))
     return rows
 
 

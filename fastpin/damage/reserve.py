@@ -136,12 +136,8 @@ class _Search:
         if self.best is None and left.size:  # the point with the largest cycle is a good first guess
             self._try(counted, history, places, top_angle(counted.largest(history)[0], theta))
         while left.size:
-            used = np.concatenate(
-                [
-                    self._used(counted, self.factor * history[:, some])
-                    for some in np.array_split(left, math.ceil(left.size * len(history) / MOST_SCALED))
-                ]
-            )
+            parts = np.array_split(left, math.ceil(left.size * len(history) / MOST_SCALED))
+            used = np.concatenate([self._used(counted, self.factor * history[:, some]) for some in parts])
             worst = int(left[top_angle(used, theta[left])])
             if used.max() > 1.0:
                 self._try(counted, history, places, worst)

@@ -196,13 +196,9 @@ def spectrum_damage(
         See :func:`fatigue`; also if the criterion has no life, the material lacks one of its constants, the stresses do
         not change, or the rule of small cycles can't be used.
     """
-    if progress is not None:
-        checks.check_callable("progress", progress)
-    tell_read, tell_counted = halves(progress)
+    checks.check_callable("progress", progress)
     how = FatigueAssessment(small_cycles=small_cycles, knee=knee)
-    return spectrum_count(states, criterion, body, points, depth, constants, straight, how).damage(
-        tell_read, tell_counted
-    )
+    return spectrum_count(states, criterion, body, points, depth, constants, straight, how).damage(*halves(progress))
 
 
 class SpectrumCount(NamedTuple):
@@ -281,22 +277,12 @@ def spectrum_count(
     if constants is not None:
         checks.instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
     below = np.broadcast_to(points.depths(problem, body), points.shape)
-    parts = [
-        (
-            chosen,
-            CountedMaterial.of(
-                criterion,
-                isotropic_material("body", problem, one, CRITERION),
-                constants,
-                owner_of(problem, one),
-                how,
-            ),
-        )
-        for chosen, one in bodies_at(problem, body, below.ravel())
-    ]
-    blocks = with_residual(
-        partial(history_blocks, different, points, body, straight), problem, body, points, how.residual_stress
-    )
+    parts = []
+    for chosen, one in bodies_at(problem, body, below.ravel()):
+        material = isotropic_material("body", problem, one, CRITERION)
+        parts.append((chosen, CountedMaterial.of(criterion, material, constants, owner_of(problem, one), how)))
+    read = partial(history_blocks, different, points, body, straight)
+    blocks = with_residual(read, problem, body, points, how.residual_stress)
     return SpectrumCount(criterion, body, points.theta, below * problem.hole_radius, different, order, parts, blocks)
 
 
@@ -325,9 +311,8 @@ def damage_ranking(
         See :func:`spectrum_damage`; also if no body has the constants.
     """
     problem = stops_of_one_problem(states)[0].problem
-    bodies = (
-        bodies_with_lives(problem, checks.choice("criterion", criterion, CRITERIA)) or isotropic_bodies(problem)[:1]
-    )
+    known = bodies_with_lives(problem, checks.choice("criterion", criterion, CRITERIA))
+    bodies = known or isotropic_bodies(problem)[:1]
     how: dict[str, Any] = {"depth": depth, "straight": straight, "small_cycles": small_cycles, "knee": knee}
     found = [spectrum_damage(states, criterion, body, progress=progress, **how) for body in bodies]
     return sorted((one for one in found if one.damage.any()), key=lambda one: -one.hot_spot.damage)
