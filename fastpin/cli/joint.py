@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 
 from fastpin import figures, joints, report
 from fastpin.assess import outputs
@@ -41,15 +42,10 @@ def run(options: argparse.Namespace) -> int:
         if result is None or not len(result):
             return code
         terminal.say(f"note: {len(result)} of {len(case.corners)} load points were reached", file=sys.stderr)
-    written = terminal.write_outputs(
-        [
-            (options.plot, lambda path: figures.plot_joint(result, path, case.title)),
-            (options.shares, lambda path: figures.plot_shares(result, path, case.title)),
-        ],
-        options.json,
-        lambda: outputs.whole_document(
-            report.joints.JOINT, result, report.joints.joint_units(result.joint), title=case.title
-        ),
-        lambda: [*filter(None, [case.title]), *report.joints.describe(result).split("\n")],
-    )
+    draws = {options.plot: figures.plot_joint, options.shares: figures.plot_shares}
+    files = [(name, partial(draw, result, title=case.title)) for name, draw in draws.items()]
+    unit = report.joints.joint_units(result.joint)
+    document = partial(outputs.whole_document, report.joints.JOINT, result, unit, title=case.title)
+    text = [*filter(None, [case.title]), *report.joints.describe(result).split("\n")]
+    written = terminal.write_outputs(files, options.json, document, lambda: text)
     return code or written

@@ -179,13 +179,8 @@ def add_wear(commands: Any) -> None:
     wear = _command(commands, "wear", "wear", "run", words)
     _option(wear, "case", None, "case file (TOML), with the section [wear], or with --coefficient", Path)
     _option(wear, "--cycles", "N", "number of cycles, such as 1e5", literal)
-    _option(
-        wear,
-        "--coefficient",
-        "K",
-        "wear coefficient of both bodies together, 1/Pa, or in the units of the case",
-        literal,
-    )
+    words = "wear coefficient of both bodies together, 1/Pa, or in the units of the case"
+    _option(wear, "--coefficient", "K", words, literal)
     _option(wear, "--law", "LAW", "archard: per pressure and slip; energy: per friction energy")
     _option(wear, "--at", "N,N", "cycles after which profile and states are stored")
     words = "largest error of the worn gap by cycles that stand for many (default 0.01); 0 solves every cycle"
@@ -520,7 +515,6 @@ def add_schema(commands: Any) -> None:
 
 def add_completion(commands: Any) -> None:
     """Add ``completion``."""
-    completion = _command(
-        commands, "completion", "texts", "completion", "print a script that completes words in a shell"
-    )
+    words = "print a script that completes words in a shell"
+    completion = _command(commands, "completion", "texts", "completion", words)
     completion.add_argument("shell", choices=SHELLS, help="the shell")

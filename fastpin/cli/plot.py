@@ -62,13 +62,8 @@ def _check(options: argparse.Namespace, is_case: bool) -> None:
 
 def _plot(options: argparse.Namespace) -> figures.sheet.Plot:
     """Return the figure of a stored result, and say which part of the result it shows."""
-    given = {
-        name: value
-        for name in KINDS[options.kind].options
-        if (value := getattr(options, name)) is not None and name != "csv"
-    }
-    if options.after is not None:
-        given["after"] = options.after
+    names = [*(name for name in KINDS[options.kind].options if name != "csv"), "after"]
+    given = {name: value for name in names if (value := getattr(options, name)) is not None}
     progress_bar = Bar(1.0, "damage of the spectrum")
     if options.interface == "seat":
         subject: figures.states.Subject = figures.states.InMemory(load_seat(options.result))

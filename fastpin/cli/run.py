@@ -113,9 +113,8 @@ def _note_unfinished(case: Case, path: Path) -> None:
     """Say that a stored run has not come to its end, how far it is, and why or how to continue it."""
     last = storage.load(path, states=slice(-1, None))
     if storage.lacks_error_bars(path):
-        terminal.say(
-            f"note: no error bars: their run on the coarse grid has not ended; continue with: fastpin resume {path}"
-        )
+        words = "no error bars: their run on the coarse grid has not ended"
+        terminal.say(f"note: {words}; continue with: fastpin resume {path}")
     if last.complete:
         return
     reached = f"{last[0].step + 1:,}" if len(last) else "0"
@@ -318,9 +317,8 @@ class RunReport:
             drawn = figures.states.held_states(held, options.states)
         figures.plot_tractions(drawn, path, title=self.case.title)
         if drawn.note:
-            terminal.say(
-                f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout
-            )
+            to = sys.stderr if options.json == "-" else sys.stdout
+            terminal.say(f"{path} shows {drawn.note}{drawn.remedy}", file=to)
 
     def _print_states(self, read: terminal.Readings, cycle: LoadCycle | None, found: Mapping[str, Any]) -> None:
         case, held = self.case, self.held

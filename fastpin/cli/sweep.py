@@ -233,10 +233,8 @@ def tolerances(options: argparse.Namespace) -> int:
     if summary is None:
         return terminal.EXIT_INTERRUPTED
     rows = studies.sweep.rows(plan, directory)
-    charts = [
-        report.tolerances.tolerance_chart(study, rows, name)
-        for name in (shown if options.plot or options.scatter else ())
-    ]
+    drawn = shown if options.plot or options.scatter else ()
+    charts = [report.tolerances.tolerance_chart(study, rows, name) for name in drawn]
     files = [
         (options.table, lambda path: report.sweep.write_csv(plan, rows, path)),
         (options.plot, lambda path: figures.plot_tornado(charts, path)),

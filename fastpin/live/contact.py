@@ -9,7 +9,7 @@ import gc
 import math
 import threading
 from collections import deque
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
@@ -340,18 +340,19 @@ class LiveContact:
             known = self._known.get(name)
             if known is None or any(one is not other for one, other in zip(value, known, strict=True)):
                 self._known[name] = value
-                answer[name] = getattr(self, f"{name}_document")()
+                answer[name] = self._known_things[name]()
         return answer
 
-    def reference_document(self) -> Answer | None:
-        """The picture of the reference; None if there is none."""
-        return self._reference
+    @property
+    def _known_things(self) -> dict[str, Callable[[], Any]]:
+        """What the page knows besides pictures: the case, the reference, and the angles of the nodes by grid, rad."""
+        return {
+            "case": self._case_document,
+            "reference": lambda: self._reference,
+            "grids": lambda: {name: text for name, (_, text) in self._grids.items()},
+        }
 
-    def grids_document(self) -> Answer:
-        """The angles of the nodes, rad, by the names of the grids."""
-        return {name: text for name, (_, text) in self._grids.items()}
-
-    def case_document(self) -> Answer:
+    def _case_document(self) -> Answer:
         """The problem, its controls and its loads."""
         return case_document(self._case.title, self.session.problem, self._scales) | {
             "nodes": self._nodes,
@@ -361,13 +362,8 @@ class LiveContact:
 
     def recording(self) -> Answer:
         """Everything that a recording of this contact holds."""
-        return {
-            "version": __version__,
-            "case": self.case_document(),
-            "grids": self.grids_document(),
-            "reference": self._reference,
-            "add": [self._pictures[serial] for serial in self._trail],
-        }
+        known = {name: make() for name, make in self._known_things.items()}
+        return {"version": __version__, **known, "add": [self._pictures[serial] for serial in self._trail]}
 
     def case_text(self) -> str:
         """The problem and the history so far as a case file, on the same nodes.
@@ -381,11 +377,8 @@ class LiveContact:
         if history is None or grid is None:
             raise InputError("case", "no load was followed yet")
         if "file" in self.session.problem.plate_body.keys:
-            raise InputError(
-                "case",
-                "a plate from a compliance file can't be saved here; "
-                "save the loads (CSV), and name them in a copy of your own case file",
-            )
+            words = "a plate from a compliance file can't be saved here; save the loads (CSV), and name them in a copy"
+            raise InputError("case", f"{words} of your own case file")
         arc = ALL_ROUND if grid.closed else (float(grid.theta[0]), float(grid.theta[-1]))
         options = replace(SolveOptions(), nodes=grid.size, arc=arc)
         return case_text(replace(self._case, problem=self.session.problem, history=history, options=options))

@@ -305,11 +305,9 @@ def _changed_plate_material(plate: Material, changes: Mapping[str, Any]) -> Mate
     for name in _names_of_material("plate"):
         if name in changes:
             raise InputError(name, "can't be changed: the plate is a laminate")
-    return (
-        replace(plate, axis=angles.angle_at(checks.number(AXIS, changes[AXIS], -360.0, 360.0)))
-        if AXIS in changes
-        else plate
-    )
+    if AXIS not in changes:
+        return plate
+    return replace(plate, axis=angles.angle_at(checks.number(AXIS, changes[AXIS], -360.0, 360.0)))
 
 
 def _of_body(group: str, controls: Sequence[Control], unit: Mapping[str, Unit]) -> list[dict[str, Any]]:

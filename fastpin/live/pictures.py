@@ -85,9 +85,7 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         **json_ready(_numbers(state)),
         "rounding": {kind: ROUNDING * size for kind, size in sizes(state).items()},
         "doubt": "; ".join(map(str, pressure_doubts(state.problem, history, [state.pressure]))),
-        "pressure": packed(state.pressure),
-        "shear": packed(state.shear),
-        "gap": packed(state.gap),
+        **{name: packed(getattr(state, name)) for name in ("pressure", "shear", "gap")},
         "status": packed(state.status, "i1"),
         "curves": dict(zip(("degrees", "pressure", "shear"), map(packed, curves), strict=True)),
         "hoop": hoop,
@@ -96,26 +94,18 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
 
 def _numbers(state: State) -> dict[str, Any]:
     loops, seat = LoadCycle((state, state)).loops, state.seat
+    of_seat = None
+    if seat is not None:
+        of_seat = {name: getattr(seat, name) for name in ("peak_slip", "rotation", "dissipation")}
+        of_seat |= {"frictionless": seat.problem.frictionless, **_zones(seat)}
+    names = ("load", "dx", "dy", "rotation", "dissipation", "peak_pressure", "peak_shear")
+    places = {name: getattr(state, name) for name in ("peak_pressure_angle", "peak_shear_angle")}
     return {
-        "load": state.load,
+        **{name: getattr(state, name) for name in names},
+        **{name: math.nan if math.isnan(angle) else angles.from_bottom(angle) for name, angle in places.items()},
         "moment": state.resultants["M"],
-        "dx": state.dx,
-        "dy": state.dy,
-        "rotation": state.rotation,
-        "dissipation": state.dissipation,
-        "peak_pressure": state.peak_pressure,
-        "peak_pressure_angle": _degrees(state.peak_pressure_angle),
-        "peak_shear": state.peak_shear,
-        "peak_shear_angle": _degrees(state.peak_shear_angle),
         **_zones(state),
-        "seat": seat
-        and {
-            "peak_slip": seat.peak_slip,
-            "rotation": seat.rotation,
-            "dissipation": seat.dissipation,
-            "frictionless": seat.problem.frictionless,
-            **_zones(seat),
-        },
+        "seat": of_seat,
         "residual": max(state.residuals.values()),
         "loops": {name: (float(loop.load[0]), float(loop.displacement[0])) for name, loop in loops.items()},
     }
@@ -128,7 +118,3 @@ def _zones(state: State) -> dict[str, Any]:
         "stick": [angles.interval_from_bottom(*ends) for ends in state.stick],
         "slip": [(*angles.interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
     }
-
-
-def _degrees(angle: float) -> float:
-    return angles.from_bottom(angle) if math.isfinite(angle) else math.nan

@@ -146,24 +146,16 @@ def case(page: PageParts) -> PageSection:
     rows = [row for row in case_rows(found) if row[0] not in elsewhere]
     if not problem.dimensionless:
         assembled = " after the press fit" if problem.press_fit_pressure else ""
-        rows += [
-            ("pin radius", unit["length"].text(problem.pin_radius)),
-            (f"clearance{assembled} / radius", f"{problem.assembled_clearance / problem.hole_radius:.4g}"),
-        ]
+        relative = f"{problem.assembled_clearance / problem.hole_radius:.4g}"
+        rows += [("pin radius", unit["length"].text(problem.pin_radius)), (f"clearance{assembled} / radius", relative)]
     known = page.source.knows_options
     told = ("nodes", "method", "error_bars")  # by a result without its run
     options = {name: value for name, value in found.options.keywords().items() if known or name in told}
     solver = [(name, as_toml(value), OPTIONS[name]["words"]) for name, value in options.items() if value is not None]
-    return PageSection(
-        "case",
-        "Case",
-        [
-            *drawn_or_reason(lambda: page.album.figure(sketch_of(found))),
-            *([page.album.figure(gap_of(found))] if problem.profiles else []),
-            Facts("The problem", rows, ("subject", "in words")),
-            Facts("Options of the solver", solver, ("option", "value", "meaning")),
-        ],
-    )
+    parts = drawn_or_reason(lambda: page.album.figure(sketch_of(found)))
+    parts += [page.album.figure(gap_of(found))] if problem.profiles else []
+    facts = Facts("Options of the solver", solver, ("option", "value", "meaning"))
+    return PageSection("case", "Case", [*parts, Facts("The problem", rows, ("subject", "in words")), facts])
 
 
 def materials(page: PageParts) -> PageSection:
@@ -178,11 +170,8 @@ def materials(page: PageParts) -> PageSection:
     for name, material in found.items():
         if not material.is_isotropic:
             parts += _laminate(name, material, problem)
-    fatigue = {
-        name: in_units(problem, material.fatigue.given(), FATIGUE)
-        for name, material in found.items()
-        if material.fatigue and not material.is_rigid
-    }
+    known = {name: each.fatigue for name, each in found.items() if each.fatigue and not each.is_rigid}
+    fatigue = {name: in_units(problem, each.given(), FATIGUE) for name, each in known.items()}
     sources = {name: given.pop("source", "") for name, given in fatigue.items()}
     if fatigue:
         names = list(dict.fromkeys(name for given in fatigue.values() for name in given))
@@ -225,9 +214,8 @@ def _laminate(name: str, material: Material, problem: Problem) -> list[SectionPa
         for ply in plies:
             values = [f"{ply[field]:.6g}" if field in ply else "-" for field in names]
             columns.append((ply.get("name", "no name"), "", values))
-        parts.append(
-            Table(f"Plies, {'moduli in 1/beta*' if problem.dimensionless else f'in {system_words(problem)}'}", columns)
-        )
+        words = "moduli in 1/beta*" if problem.dimensionless else f"in {system_words(problem)}"
+        parts.append(Table(f"Plies, {words}", columns))
     sources = {ply.get("name", "a ply"): ply["source"] for ply in plies if "source" in ply}
     return parts + [Text(f"Source of the constants of {ply}: {text}.") for ply, text in sources.items()]
 
@@ -247,10 +235,8 @@ def loads(page: PageParts) -> PageSection:
         columns = [(name, unit, cells[:half] + cells[-half:]) for name, unit, cells in columns]
         gaps = {half: f"{hidden + count - MAX_ROWS:,} corners not shown here"}
     remarks = [Text("L_p is the load parameter (R - R_D)/(F beta*) of the force F on the pin.")]
-    parts: list[SectionPart] = [
-        Facts("Loads", rows, ("load", "meaning")),
-        page.album.figure(history_of(found.problem, history, initial)),
-    ]
+    figure = page.album.figure(history_of(found.problem, history, initial))
+    parts: list[SectionPart] = [Facts("Loads", rows, ("load", "meaning")), figure]
     if initial.any():
         kept = named_loads(found.problem, named_load(initial))
         remarks.append(Text(f"The run continues another result. It begins with its loads: {kept}.", "note"))
@@ -452,10 +438,8 @@ def crack(page: PageParts) -> PageSection:
     found = page.source.answer("crack")
     if isinstance(found, str):
         return PageSection("crack", "Crack", [Text(found, "missing")])
-    parts: list[SectionPart] = [
-        Text(sentence(growth_line(found, page.source.over_yield))),
-        page.album.figure(crack_growth_of(found)),
-    ]
+    line = Text(sentence(growth_line(found, page.source.over_yield)))
+    parts: list[SectionPart] = [line, page.album.figure(crack_growth_of(found))]
     if isinstance(found.law, Walker | Nasgro):
         parts.append(Text(sentence(f"Law of growth: {law_words(found.problem, found.law)}")))
     parts += [Text(sentence(f"Doubt: {doubt}")) for doubt in found.doubts]

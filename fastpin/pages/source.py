@@ -423,13 +423,6 @@ def margins(page: PageParts) -> PageSection:
         remarks += " Of the plate only the edge of its hole is looked at: its other places may fail first."
     rows, author = margin_rows(source.case.problem, found), source.case.about.author
     signed = [("prepared", author, "", ""), ("checked", "", "", ""), ("approved", "", "", "")]
-    return PageSection(
-        "margins",
-        "Margins",
-        [
-            Text(sentence(verdict(found, source.result.complete))),
-            Facts(words, rows, HEADS),
-            Text(remarks),
-            Facts("Signatures", signed, ("", "name", "date", "signature"), tall=True),
-        ],
-    )
+    signatures = Facts("Signatures", signed, ("", "name", "date", "signature"), tall=True)
+    first = Text(sentence(verdict(found, source.result.complete)))
+    return PageSection("margins", "Margins", [first, Facts(words, rows, HEADS), Text(remarks), signatures])

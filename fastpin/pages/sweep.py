@@ -203,12 +203,9 @@ def _first_case(page: Parts) -> PageSection:
     columns, hidden = corner_columns(case.problem, case.history)
     note = f" ({hidden:,} corners not shown here)" if hidden else ""
     words = f"The first run, {point.id}: {describe_values(point.values)}."
-    parts: list[SectionPart] = [
-        Text(words),
-        Facts("The problem", case_rows(case), ("subject", "in words")),
-        Table(f"Corners of the load history{note}", columns),
-    ]
-    return PageSection("case", "The first case", parts)
+    facts = Facts("The problem", case_rows(case), ("subject", "in words"))
+    table = Table(f"Corners of the load history{note}", columns)
+    return PageSection("case", "The first case", [Text(words), facts, table])
 
 
 def _charts(page: Parts) -> PageSection:
@@ -254,11 +251,9 @@ def _failed(page: Parts) -> PageSection:
     failed = [(run, point) for run, point in zip(page.runs, page.plan.points, strict=True) if run["status"] == FAILED]
     if not failed:
         return PageSection("failed", "Failed runs", [Text("No run has failed.")])
-    listed = [
-        (run["id"], describe_values(point.values), run["reason"] or "no reason is known")
-        for run, point in failed[:MOST_FAILED]
-    ]
-    parts: list[SectionPart] = [Facts(f"{len(failed):,} failed runs", listed, ("run", "values", "reason"))]
+    shown = failed[:MOST_FAILED]
+    rows = [(run["id"], describe_values(each.values), run["reason"] or "no reason is known") for run, each in shown]
+    parts: list[SectionPart] = [Facts(f"{len(failed):,} failed runs", rows, ("run", "values", "reason"))]
     if len(failed) > MOST_FAILED:
         parts.append(Text(f"{len(failed) - MOST_FAILED:,} more have failed.", "missing"))
     parts.append(Text("fastpin sweep --retry runs what failed again."))

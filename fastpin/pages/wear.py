@@ -46,11 +46,9 @@ def overview(page: PageParts) -> PageSection:
             f"{pressures[1]} on the first profile",
             f"energy per cycle: {unit['energy'].text(last.energy_per_cycle, 4)} dissipated on the last profile",
         ]
-        lines += [
-            f"damage of the {_subject(one)}: {one.words}"
-            + over_yield_words(source.over_yield, points.owner_of(life.problem, one.body))
-            for one in source.worn
-        ]
+        for one in source.worn:
+            mark = over_yield_words(source.over_yield, points.owner_of(life.problem, one.body))
+            lines.append(f"damage of the {_subject(one)}: {one.words}{mark}")
         parts.append(Items([sentence(line) for line in lines]))
     parts.append(Text(sections.ANGLES))
     return PageSection("overview", "Overview", parts)
@@ -144,9 +142,7 @@ def _subject(found: WornFatigue) -> str:
 
 def _race(found: WornFatigue) -> list[tuple[str, str]]:
     """Return what is known of the first crack, and of the material that wears away: rows of (subject, text)."""
-    length = units(found.problem)["displacement"]
-
-    left = found.hot_spots[-1]
+    length, left = units(found.problem)["displacement"], found.hot_spots[-1]
     depth = f"{length.text(left.depth, 4)} under" if left.depth else "on"
     place = f"at {angles.from_bottom(left.theta):z.2f} deg, {depth} the first surface"
     alone = cycles_text(float(f"{found.first_life:.4g}")) if math.isfinite(found.first_life) else "infinite"

@@ -37,15 +37,8 @@ def _document(page: Page) -> dict[str, Any]:
     """Return a page as the template takes it."""
     sections = [{"title": each.title, "parts": [_part(part) for part in each.parts]} for each in page.sections]
     about = [[name.capitalize(), value] for name, value in page.about.given().items()]
-    return {
-        "title": page.title,
-        "lead": page.lead,
-        "head": page.head,
-        "about": about,
-        "author": page.about.author,
-        "made": page.made,
-        "sections": sections,
-    }
+    texts = {name: getattr(page, name) for name in ("title", "lead", "head", "made")}
+    return {**texts, "about": about, "author": page.about.author, "sections": sections}
 
 
 def _part(part: SectionPart) -> dict[str, Any]:
@@ -78,9 +71,8 @@ def check_page(field: str, path: str | Path) -> Path:
     """
     found = file_path(field, path)
     if found.suffix.lower() not in (".html", ".htm", ".pdf"):
-        raise InputError(
-            field, f"must be the name of a page, which ends in .html, .htm or .pdf, not {as_toml(found.name)}"
-        )
+        words = "must be the name of a page, which ends in .html, .htm or .pdf"
+        raise InputError(field, f"{words}, not {as_toml(found.name)}")
     if _is_pdf(found):
         check_typst(field)
     check_writable(found)

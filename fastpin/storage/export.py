@@ -89,11 +89,8 @@ def _dimensions(name: str) -> list[str]:
     """The dimensions of a variable."""
     if name in SCALES:
         return [name]
-    second = (
-        "theta"
-        if name in (*layout.NODE_FIELDS, *layout.BORDER_FIELDS, *layout.SLIP_FIELDS)
-        else {"loads": "load_name", "residuals": "residual_name"}.get(name)
-    )
+    nodal = dict.fromkeys((*layout.NODE_FIELDS, *layout.BORDER_FIELDS, *layout.SLIP_FIELDS), "theta")
+    second = (nodal | {"loads": "load_name", "residuals": "residual_name"}).get(name)
     return ["state"] if second is None else ["state", second]
 
 
@@ -108,11 +105,9 @@ def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
     rows = layout.rows_of(list(result))
     for name, values in ((name, rows[name]) for name in _own(rows)):
         dimensions = _dimensions(name)
-        label = (
-            ", ".join(layout.load_units(result.problem))
-            if name == "loads"
-            else unit.get(layout.FIELD_KINDS.get(name, ""), "")
-        )
+        label = unit.get(layout.FIELD_KINDS.get(name, ""), "")
+        if name == "loads":
+            label = ", ".join(layout.load_units(result.problem))
         if len(dimensions) == 2:
             values = values.reshape(len(result), len(variables[dimensions[1]][1]))
         variables[name] = dimensions, values, {"units": label}

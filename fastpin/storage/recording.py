@@ -129,9 +129,8 @@ def record(
 def _check_bars(options: SolveOptions, start: Result | None) -> None:
     """Refuse error bars of a run in a file that continues another one."""
     if options.error_bars and start is not None:
-        raise InputError(
-            "error_bars", "a run that continues another one has none in a file; leave them or the file out"
-        )
+        words = "a run that continues another one has none in a file; leave them or the file out"
+        raise InputError("error_bars", words)
 
 
 def _checked_corners(save_after: Sequence[int], count: int) -> frozenset[int]:
@@ -262,12 +261,6 @@ def stored_case(path: str | Path) -> Case:
         See :func:`fastpin.load`.
     """
     with open_result(checks.file_path("path", path)) as file:
+        problem, history, options = layout.read_problem(file), layout.read_history(file), layout.read_options(file)
         title = hdf5.text_of(file["solver"].attrs.get("title", ""))
-        parts = (
-            layout.read_problem(file),
-            layout.read_history(file),
-            layout.read_options(file),
-            title,
-            layout.read_about(file),
-        )
-        return Case(*parts, **layout.read_beside(file))
+        return Case(problem, history, options, title, layout.read_about(file), **layout.read_beside(file))

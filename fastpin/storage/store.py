@@ -348,10 +348,5 @@ def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int, nodes
 def stored_task(file: h5py.File) -> Task:
     """Read the task of the run of a file, on its grid."""
     stops = frozenset(file["solver"].attrs["save_after"].tolist())
-    return Task(
-        layout.read_problem(file),
-        layout.read_history(file),
-        layout.read_options(file),
-        layout.read_grid(file),
-        stops=stops,
-    )
+    problem, history, options = layout.read_problem(file), layout.read_history(file), layout.read_options(file)
+    return Task(problem, history, options, layout.read_grid(file), stops=stops)

@@ -238,11 +238,8 @@ class WearFile:
             group.create_dataset(name, (0,), maxshape=(None,), chunks=(128,), dtype=kind)
         unit = units_per_thickness(task.problem)
         group["coefficients"].attrs["unit"] = unit["wear coefficient"]
-        for name, quantity in {
-            **dict.fromkeys(DEPTHS, "displacement"),
-            "dissipation": "energy",
-            "removed": "energy",
-        }.items():
+        kinds = dict.fromkeys(DEPTHS, "displacement") | dict.fromkeys(("dissipation", "removed"), "energy")
+        for name, quantity in kinds.items():
             group[name].attrs["unit"] = unit[quantity]
         self._place, self._is_stored = None, True
         self.file.commit()
@@ -317,13 +314,10 @@ def load_wear(path: str | Path) -> WearResult:
         corners, arrays = len(history.blocks[-1].given) + 1, _read_rows(file, grid.size)
         coefficients = dataset_of(group, "coefficients", float, (grid.size,))[()]
         check_between("wear/coefficients", coefficients, 0.0, np.finfo(float).max)
-        cycles = tuple(
-            WornCycle(
-                **{name: array[k] if array.ndim > 1 else array[k].item() for name, array in arrays.items()},
-                states=tuple(states[k * corners : (k + 1) * corners]),
-            )
-            for k in range(len(arrays["cycle"]))
-        )
+        cycles = []
+        for k in range(len(arrays["cycle"])):
+            given = {name: array[k] if array.ndim > 1 else array[k].item() for name, array in arrays.items()}
+            cycles.append(WornCycle(**given, states=tuple(states[k * corners : (k + 1) * corners])))
         return WearResult(
             problem=layout.read_problem(file),
             history=history,
@@ -331,7 +325,7 @@ def load_wear(path: str | Path) -> WearResult:
             tolerance=float(group.attrs["tolerance"]),
             coefficients=coefficients,
             grid=grid,
-            cycles=cycles,
+            cycles=tuple(cycles),
             complete=bool(file.attrs["complete"]),
             statistics=numbers_of(file["solver/statistics"]),
         )
@@ -342,9 +336,8 @@ def _check_same(path: Path, file: hdf5.Group, task: WearTask) -> None:
     if "wear" not in file:
         raise InputError(str(path), "holds no wear: it is the result of a run")
     if file.attrs["complete"]:
-        raise InputError(
-            str(path), f"holds a finished life of wear: there is nothing to continue; try fastpin show {path} --json"
-        )
+        words = f"holds a finished life of wear: there is nothing to continue; try fastpin show {path} --json"
+        raise InputError(str(path), words)
     group, grid = file["wear"], layout.read_grid(file)
     begun, wanted = layout.read_history(file).blocks, task.stored_history.blocks
     same = {

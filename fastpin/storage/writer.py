@@ -326,20 +326,10 @@ class FileRecorder:
         self._states, self._cycles, self._pending = [], [], 0
         self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
         task = self.task
-        extra = {
-            "title": self._title,
-            **self._about.given(),
-            **layout.beside_attributes(self._beside),
-            "arc_chosen": self.chosen_arc,
-            "save_after": sorted(task.stops),
-        }
-        layout.write_head(
-            self._h5,
-            task.problem,
-            task.history,
-            run.grid,
-            {**layout.option_attributes(task.options), "nodes": run.grid.size, **extra},
-        )
+        attributes = {**layout.option_attributes(task.options), "nodes": run.grid.size, "title": self._title}
+        attributes |= {**self._about.given(), **layout.beside_attributes(self._beside)}
+        attributes |= {"arc_chosen": self.chosen_arc, "save_after": sorted(task.stops)}
+        layout.write_head(self._h5, task.problem, task.history, run.grid, attributes)
         self._h5.attrs["run"] = self.file.run
         for name in ("start", "latest"):
             self._write_restart(self._h5.create_group(f"restart/{name}"))
@@ -422,9 +412,8 @@ class FileRecorder:
         if known:
             stored = self._h5["states/pressure"][self._at[0] : self._at[0] + known]
             if not np.array_equal(stored, rows["pressure"][:known]):
-                log.warning(
-                    "%s: states found again differ from those in the file: another machine or version?", self.file.path
-                )
+                words = "%s: states found again differ from those in the file: another machine or version?"
+                log.warning(words, self.file.path)
             rows = {name: array[known:] for name, array in rows.items()}
         self._at[0] += size
         if size > known:
@@ -475,9 +464,8 @@ def add_coarse(path: Path, beside: Path) -> None:
         layout.write_grid(group, layout.read_problem(stored), history, grid, layout.node_fields(stored["states"]))
         states = stored["states"]
         for first in range(0, layout.count(states), PIECE):
-            layout.append(
-                group["states"], layout.read_rows(states, layout.state_rows(states), slice(first, first + PIECE))
-            )
+            rows = layout.read_rows(states, layout.state_rows(states), slice(first, first + PIECE))
+            layout.append(group["states"], rows)
         layout.append(group["cycles"], layout.cycle_rows(layout.read_cycles(stored)))
         nodes = all_nodes(stored, layout.read_problem(stored), grid)
         write_restart(group.create_group("restart/latest"), read_restart(stored["restart/latest"], nodes))
