@@ -70,9 +70,8 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         rows.append(("states", f"kept: {options.keep}"))
     if case.wear is not None:
         rows.append(("wear", _wear_words(problem, case.wear)))
-    return rows + [
-        (name, assess.questions.QUESTIONS[name].words(problem, how)) for name, how in questions_of(case).items()
-    ]
+    asked = questions_of(case).items()
+    return rows + [(name, assess.questions.QUESTIONS[name].words(problem, how)) for name, how in asked]
 
 
 def _wear_words(problem: Problem, wear: Wear) -> str:
@@ -110,9 +109,8 @@ def _bodies(problem: Problem) -> list[tuple[str, str]]:
     for body in (problem.pin_body, problem.plate_body):
         rows += body.rows(unit["length"].text, lambda material: _material(material, problem))
     if bush is not None and bush.interference < 0.0:
-        rows.append(
-            ("loose fit", f"clearance {unit['displacement'].text(-bush.interference)} of the bush in the plate")
-        )
+        words = f"clearance {unit['displacement'].text(-bush.interference)} of the bush in the plate"
+        rows.append(("loose fit", words))
     elif bush is not None and bush.interference:
         words = f"interference {unit['displacement'].text(bush.interference)}"
         words += f", pressure {unit['traction'].text(problem.press_fit_pressure, 4)}"
@@ -203,10 +201,8 @@ def _material(material: Material, problem: Problem) -> str:
     pressures = [name for name in material.shown_moduli if not name.startswith("nu")]
     unit = units(problem)
     modulus = "{:.4g} / beta*".format if problem.dimensionless else unit["modulus"].text
-    moduli = [
-        f"{name} = {modulus(value) if name in pressures else f'{value:.4g}'}"
-        for name, value in material.shown_moduli.items()
-    ]
+    shown = material.shown_moduli.items()
+    moduli = [f"{name} = {modulus(value) if name in pressures else f'{value:.4g}'}" for name, value in shown]
     strength = material.known_yield_strength
     yields = "" if strength is None else f"yields at {unit['modulus'].text(strength, 4)}"
     expands = "" if material.expansion is None else f"expands by {material.expansion:.4g} per K"

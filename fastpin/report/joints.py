@@ -145,19 +145,15 @@ class JointContact(NamedTuple):
 def _loads(state: JointState) -> dict[str, float]:
     """Loads in printed units."""
     unit, joint = joint_units(state.joint), state.joint
-    return {
-        name: unit["traction" if joint.is_stress(name) else "force"].factor * value
-        for name, value in state.load.items()
-    }
+    kinds = {name: "traction" if joint.is_stress(name) else "force" for name in state.load}
+    return {name: unit[kinds[name]].factor * value for name, value in state.load.items()}
 
 
 def _moved(state: JointState) -> dict[str, list[float]]:
     """Displacement in printed units and rotation of each plate."""
     factor = joint_units(state.joint)["displacement"].factor
-    return {
-        plate.name: (by * [factor, factor, 1.0]).tolist()
-        for plate, by in zip(state.joint.plates, state.moved, strict=True)
-    }
+    moved = (state.moved * [factor, factor, 1.0]).tolist()
+    return dict(zip((plate.name for plate in state.joint.plates), moved, strict=True))
 
 
 KINDS = {
@@ -221,9 +217,7 @@ JOINT = (
     Output("nodes", "whole"),
     Output(
         "harmonics", form=map_of(WHOLE, "highest harmonic of the holes of each plate"),
-        of=lambda result: {
-            plate.name: order for plate, order in zip(result.joint.plates, result.harmonics, strict=True)
-        },
+        of=lambda result: dict(zip((each.name for each in result.joint.plates), result.harmonics, strict=True)),
     ),
     Output("snaps", "whole"),
     Output("seconds"),

@@ -33,11 +33,8 @@ def json_schema(command: str) -> outputs.Schema:
         If there is no such document.
     """
     schema = _DOCUMENTS[choice("command", command, COMMANDS)]()
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": f"JSON of fastpin {command}, version {__version__}",
-        **schema,
-    }
+    title = f"JSON of fastpin {command}, version {__version__}"
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": title, **schema}
 
 
 CHECKS = (

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -113,9 +114,8 @@ def table_rows(
     if numbers.size > MOST_COMPARED:
         return TableRows(outputs.with_rows(outputs.cut_lines(rows.size), wanted), points)
     given = [name for name in LOADS if name not in problem.reactions]
-    if numbers.size < rows.size or outputs.repeats(
-        outputs.row_numbers(tuple(state.load[name] for name in given) for state in states)
-    ):
+    given_loads = (tuple(state.load[name] for name in given) for state in states)
+    if numbers.size < rows.size or outputs.repeats(outputs.row_numbers(given_loads)):
         columns = state_columns(problem, [states[place] for place in first.tolist()])
         # A state differs from the same state one cycle before in its number, in a sum, and by rounding.
         own = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
@@ -221,28 +221,17 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[outputs.Col
     """
     states = _checked(problem, states)
 
-    def column(name: str, digits: int = 5, natural: float = 0.0) -> outputs.Column:
-        return quantity_column(problem, states, name, digits, natural)
-
-    def angles(name: str) -> outputs.Column:
-        return ("at", *quantity_column(problem, states, name)[1:])
-
+    column = partial(quantity_column, problem, states)
     strain = problem.surfaces.beta_star * max((state.peak_pressure for state in states), default=0.0)
     energy = max((abs(state.energy) for state in states), default=0.0)
     columns = [(LOAD_POINT, "", [_point(state) for state in states])]
     columns += load_columns(problem, [state.load for state in states])
-    return [
-        *columns,
-        column("peak_pressure"),
-        angles("peak_pressure_angle"),
-        column("peak_shear"),
-        angles("peak_shear_angle"),
-        ("contact", "deg", [_intervals(state, "contact") for state in states]),
-        ("stick", "deg", [_intervals(state, "stick") for state in states]),
-        column("rotation", 4, strain),
-        column("dissipation", 4, energy),
-        ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
-    ]
+    for peak in ("peak_pressure", "peak_shear"):
+        columns += [column(peak), ("at", *column(f"{peak}_angle")[1:])]
+    columns += [(zone, "deg", [_intervals(state, zone) for state in states]) for zone in ("contact", "stick")]
+    residuals = [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]
+    ends = column("rotation", 4, strain), column("dissipation", 4, energy), ("residual", "", residuals)
+    return [*columns, *ends]
 
 
 def _checked(problem: Problem, states: Sequence[State]) -> list[State]:
@@ -303,11 +292,8 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
     factor, unit = units(problem)["traction"].scale([peak.value])
     bar = _bar(state, factor, "peak_hoop" if body == "plate" else "peak_hoop_seat").replace(" +-?", "")
-    text = (
-        f"largest hoop stress of the {edge_body(problem, body)} in all kept states: "
-        f"{peak.value * factor:.4g}{bar} {unit}"
-        f"{resolved} at {_angle(peak.angle)} deg, load point {_point(state)}"
-    )
+    text = f"largest hoop stress of the {edge_body(problem, body)} in all kept states: {peak.value * factor:.4g}{bar} "
+    text += f"{unit}{resolved} at {_angle(peak.angle)} deg, load point {_point(state)}"
     parts = {"remote": peak.kt_bypass_part, "bearing": peak.kt_bearing_part}
     terms = [f"{value:.4g} x {name} stress" for name, value in parts.items() if math.isfinite(value)]
     ratios = {"bearing": peak.kt_bearing, "net-section": peak.kt_net, "remote": peak.kt_gross}
@@ -337,16 +323,14 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     if problem.bush_slips and fit.open_margin <= 0.0:
         return f"the bush opens in its seat {where}"
     if fit.open_margin < 0.0:
-        return (
-            f"note: the bush would open {where}: it needs a press-fit pressure of "
-            f"{unit.text(fit.pressure_to_close, 4)}, not {unit.text(fit.press_fit_pressure, 4)}; "
-            "these states hold for a bonded bush"
-        )
+        needed, given = (unit.text(each, 4) for each in (fit.pressure_to_close, fit.press_fit_pressure))
+        words = f"note: the bush would open {where}: it needs a press-fit pressure of {needed}, not {given}"
+        return f"{words}; these states hold for a bonded bush"
     text = f"smallest pressure between bush and plate in all kept states: {unit.text(fit.open_margin, 4)} {where}"
     if problem.bush_slips:
         return text
-    needed = max(fit.least_friction for _, fit in fits)
-    return f"{text}; the bush sticks with a friction of {needed:.3g} or more"
+    friction = max(fit.least_friction for _, fit in fits)
+    return f"{text}; the bush sticks with a friction of {friction:.3g} or more"
 
 
 def seat_lines(problem: Problem, states: Sequence[State], last: State, cycle: Sequence[State] = ()) -> list[str]:
@@ -373,12 +357,12 @@ def seat_lines(problem: Problem, states: Sequence[State], last: State, cycle: Se
     def shown(kind: str, value: float, digits: int) -> str:
         return unit[kind].text(0.0 if abs(value) <= ROUNDING * sizes(seat)[kind] else value, digits)
 
-    text = (
-        f"bush in its seat at load point {_point(last)}: contact {_intervals(seat, 'contact')}, "
-        f"stick {_intervals(seat, 'stick')} (deg); largest slip in all kept states: "
-        f"{shown('displacement', most.peak_slip, 4)} at {_angle(most.peak_slip_angle)} deg, load point {_point(most)}; "
-        f"turned {shown('rotation', seat.rotation, 4)} so far"
+    zones = f"contact {_intervals(seat, 'contact')}, stick {_intervals(seat, 'stick')} (deg)"
+    slip = (
+        f"{shown('displacement', most.peak_slip, 4)} at {_angle(most.peak_slip_angle)} deg, load point {_point(most)}"
     )
+    text = f"bush in its seat at load point {_point(last)}: {zones}; largest slip in all kept states: {slip}; "
+    text += f"turned {shown('rotation', seat.rotation, 4)} so far"
     turned = [state.seat.rotation for state in cycle if state.seat is not None]
     if turned:
         text += f", {shown('rotation', turned[-1] - turned[0], 3)} in the last cycle"
@@ -395,10 +379,9 @@ def cycle_lines(problem: Problem, cycles: Sequence[Cycle], states: Sequence[Stat
     found = [sizes(state) for state in states]
     natural = {kind: max((each[kind] for each in found), default=0.0) for kind in ("energy", "rotation")}
     lines = [_block_line(problem, block, natural) for block in consecutive_cycles(cycles)]
-    if len(lines) > outputs.MAX_ROWS // 2:
-        lines[outputs.MAX_ROWS // 4 : -outputs.MAX_ROWS // 4] = [
-            f"... {len(lines) - outputs.MAX_ROWS // 2} more blocks of cycles ..."
-        ]
+    most = outputs.MAX_ROWS // 2
+    if len(lines) > most:
+        lines[most // 2 : -most // 2] = [f"... {len(lines) - most} more blocks of cycles ..."]
     return lines
 
 
@@ -426,11 +409,9 @@ def _block_line(problem: Problem, cycles: list[Cycle], natural: Mapping[str, flo
     if len(cycles) == 1:
         return f"{text}; dissipated {dissipation[0]}, {who} turned {turned[0]}"
     changes = [f"{max(cycle.pressure_change, cycle.shear_change):.2g}" for cycle in (first, last)]
-    return (
-        f"{text}; first cycle: tractions changed by {changes[0]} of the peak pressure, dissipated {dissipation[0]}, "
-        f"{who} turned {turned[0]}; last: changed by {changes[1]}, dissipated {dissipation[1]}, "
-        f"{who} turned {turned[1]}"
-    )
+    before, after = (f"dissipated {one}, {who} turned {two}" for one, two in zip(dissipation, turned, strict=True))
+    first_words = f"first cycle: tractions changed by {changes[0]} of the peak pressure, {before}"
+    return f"{text}; {first_words}; last: changed by {changes[1]}, {after}"
 
 
 def _point(state: State) -> str:

@@ -122,9 +122,8 @@ def depth_curves(
     radius, curves = states[0].problem.hole_radius, []
     below = deepest * radius * np.linspace(0.0, 1.0, DEPTHS) ** 3
     for state in states:
-        place = (
-            state.peak_hoop_stress(body).angle if angle is None else math.radians(checks.number("angle", angle) - 90.0)
-        )
+        given = None if angle is None else math.radians(checks.number("angle", angle) - 90.0)
+        place = state.peak_hoop_stress(body).angle if given is None else given
         found = state.stress(points.Points.at_depth(below, place), body)
         columns = unit["length"].column("depth", below)
         for name in ("radial", "hoop", "shear", "von_mises"):
@@ -137,9 +136,8 @@ def depth_curves(
 def _check_depth(depth: float, problem: Problem, body: points.Body) -> None:
     """Check the depth of a profile, in hole radii."""
     far, wall = points.far_rim(problem, body), points.known_depth(problem, body)
-    inside = (
-        depth < wall if far == 0.0 else depth <= wall * (1.0 + points.ROUNDING)
-    )  # a force may act at the centre of a pin
+    # A force may act at the centre of a pin.
+    inside = depth < wall if far == 0.0 else depth <= wall * (1.0 + points.ROUNDING)
     if depth > 0.0 and inside:
         return
     if math.isinf(wall):

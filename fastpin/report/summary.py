@@ -270,12 +270,9 @@ def _history(run: _Run) -> dict[str, Any]:
     unit, history = units(run.problem), run.case.history
     factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
     listed = [place for place, name in enumerate(LOADS) if name not in LATER or name in history.largest]
-    return {
-        "loads": [LOADS[place] for place in listed],
-        "blocks": [
-            {"repeat": each.count, "corners": (factors * each.given)[:, listed].tolist()} for each in history.blocks
-        ],
-    }
+    corners = [(factors * each.given)[:, listed].tolist() for each in history.blocks]
+    blocks = [{"repeat": each.count, "corners": given} for each, given in zip(history.blocks, corners, strict=True)]
+    return {"loads": [LOADS[place] for place in listed], "blocks": blocks}
 
 
 def _extremes(run: _Run) -> dict[str, Any]:

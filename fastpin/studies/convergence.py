@@ -232,9 +232,8 @@ def converge(
         single = checks.whole_number("increment_nodes", increment_nodes, LEAST_NODES, MAX_NODES)
     task = Task(problem, as_history(history), SolveOptions(nodes=counts[0], arc=arc))
     if corner is not None and checks.whole_number("corner", corner, 1) > len(task.history):
-        raise InputError(
-            "corner", f"must be one of the history, 1 to {len(task.history)}, not {checks.as_toml(corner)}"
-        )
+        words = f"must be one of the history, 1 to {len(task.history)}"
+        raise InputError("corner", f"{words}, not {checks.as_toml(corner)}")
     chosen = _checked_outcomes({} if outcomes is None else outcomes)
     warn_of(doubts(problem, task.history, task.options), 3)  # above are the explanation of keywords and the user
     return _Work(task, counts, steps, single, corner, progress, chosen).study()
@@ -258,9 +257,8 @@ def _increasing(field: str, numbers: object, least: int, most: int | None = None
     if isinstance(numbers, Sequence | np.ndarray) and not isinstance(numbers, (str, bytes)):
         listed = checks.items(field, numbers, "a list of numbers")
     if len(listed) < LEAST_GRIDS:
-        raise InputError(
-            field, f"must be at least {LEAST_GRIDS} numbers, from which an order follows, not {checks.as_toml(numbers)}"
-        )
+        words = f"must be at least {LEAST_GRIDS} numbers, from which an order follows"
+        raise InputError(field, f"{words}, not {checks.as_toml(numbers)}")
     checked = tuple(checks.whole_number(field, number, least, most) for number in listed)
     for before, after in pairwise(checked):
         if after <= before:
@@ -375,9 +373,8 @@ class _Work:
             closed = int(np.count_nonzero(state.pressure))
             if 0 < closed < LEAST_CLOSED:
                 field = "nodes" if nodes in self.counts else "increment_nodes"
-                raise InputError(
-                    field, f"{nodes} put only {closed} in the contact at corner {corner}; take at least {LEAST_CLOSED}"
-                )
+                words = f"{nodes} put only {closed} in the contact at corner {corner}"
+                raise InputError(field, f"{words}; take at least {LEAST_CLOSED}")
         self.done += cost
         return result
 

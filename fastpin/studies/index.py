@@ -113,46 +113,28 @@ class Index:
         with self._as_input_error(), self._transaction():
             self._add_columns(fields)
             self._make_tables()
-            self._database.executemany(
-                "DELETE FROM outcomes WHERE name = ? AND definition <> ?",
-                [(name, outcome.definition) for name, outcome in plan.outcomes.items()],
-            )
+            definitions = [(name, outcome.definition) for name, outcome in plan.outcomes.items()]
+            self._database.executemany("DELETE FROM outcomes WHERE name = ? AND definition <> ?", definitions)
             self._write_notes(version=__version__, plan=plan.digest, title=plan.title, text=plan.text)
             self._write_notes(fields=json.dumps(self.fields | plan.fields))
             columns = ["id", "status", "dimensionless", "input", *fields]
             update = "".join(f", {_quoted([name])} = excluded.{_quoted([name])}" for name in fields)
-            self._database.executemany(
-                f"INSERT INTO runs ({_quoted(columns)}) VALUES ({', '.join('?' * len(columns))}) "
-                f"ON CONFLICT (id) DO UPDATE SET input = excluded.input{update}",
-                (
-                    (
-                        point.id,
-                        WAITING,
-                        json.loads(point.input)["dimensionless"],
-                        point.input,
-                        # A list or table becomes JSON; a number or text stays.
-                        *(json.dumps(v) if isinstance(v, list | dict) else v for v in map(point.values.get, fields)),
-                    )
-                    for point in points
-                ),
-            )
+            insert = f"INSERT INTO runs ({_quoted(columns)}) VALUES ({', '.join('?' * len(columns))}) "
+            insert += f"ON CONFLICT (id) DO UPDATE SET input = excluded.input{update}"
+            for point in points:
+                # A list or table becomes JSON; a number or text stays.
+                cells = [json.dumps(v) if isinstance(v, list | dict) else v for v in map(point.values.get, fields)]
+                own = point.id, WAITING, json.loads(point.input)["dimensionless"], point.input
+                self._database.execute(insert, [*own, *cells])
 
     def record(self, ends: Iterable[RunEnd]) -> None:
         """Write the ends of runs into their rows, with their results and the values of their outcomes, all at once."""
         assignments = ", ".join(f'"{name}" = :{name}' for name in _END_COLUMNS)
         with self._as_input_error(), self._transaction():
             for end in ends:
-                cells: dict[str, Any] = {
-                    "id": end.id,
-                    "status": DONE if end.reason is None else FAILED,
-                    "reason": end.reason,
-                    **dict.fromkeys(KEY_FIGURES),
-                    **end.figures,
-                    "seconds": end.seconds,
-                    "started": end.started,
-                    "host": end.host,
-                    "versions": json.dumps(end.versions),
-                }
+                same = {name: getattr(end, name) for name in ("id", "reason", "seconds", "started", "host")}
+                state = {"status": DONE if end.reason is None else FAILED, "versions": json.dumps(end.versions)}
+                cells = {**dict.fromkeys(KEY_FIGURES), **end.figures, **same, **state}
                 self._database.execute(f"UPDATE runs SET {assignments} WHERE id = :id", cells)
                 self._database.execute("DELETE FROM bars WHERE run = ?", [end.id])
                 self._write_bars(end.id, end.bars)
@@ -263,9 +245,8 @@ class Index:
         with self._as_input_error(), self._transaction():
             names = list(other.fields)
             self._add_columns(names)
-            self._write_notes(
-                **{name: other.read_note(name) for name in ("version", "plan", "title", "text", "fields")}
-            )
+            notes = ("version", "plan", "title", "text", "fields")
+            self._write_notes(**{name: other.read_note(name) for name in notes})
             columns = _quoted([*RUN_COLUMNS, *names])
             placeholders = ", ".join("?" * (len(RUN_COLUMNS) + len(names)))
             for run in ids:
@@ -287,17 +268,14 @@ class Index:
                 self._database.execute(f"ALTER TABLE runs ADD COLUMN {_quoted([name])}")
 
     def _write_outcomes(self, run: str, values: dict[str, OutcomeValue]) -> None:
-        self._database.executemany(
-            "INSERT OR REPLACE INTO outcomes VALUES (?, ?, ?, ?, ?)",
-            [(run, name, value.definition, value.value, value.reason) for name, value in values.items()],
-        )
+        rows = [(run, name, value.definition, value.value, value.reason) for name, value in values.items()]
+        self._database.executemany("INSERT OR REPLACE INTO outcomes VALUES (?, ?, ?, ?, ?)", rows)
         self._database.executemany("DELETE FROM bars WHERE run = ? AND name = ?", [(run, name) for name in values])
         self._write_bars(run, {name: value.bar for name, value in values.items() if value.bar is not None})
 
     def _write_bars(self, run: str, bars: dict[str, float]) -> None:
-        self._database.executemany(
-            "INSERT OR REPLACE INTO bars VALUES (?, ?, ?)", [(run, name, bar) for name, bar in bars.items()]
-        )
+        rows = [(run, name, bar) for name, bar in bars.items()]
+        self._database.executemany("INSERT OR REPLACE INTO bars VALUES (?, ?, ?)", rows)
 
     def _make_tables(self) -> None:
         """Add the tables that an index of an earlier version lacks."""

@@ -107,9 +107,8 @@ def read_outcomes(path: str | Path) -> Outcomes:
             source.report("the section [outcomes] is missing")
     else:
         functions = _functions(path, text)
-        source = CaseText("").with_tables(
-            {"outcomes": {name: {"function": f"{path.name}:{name}"} for name in functions}}
-        )
+        tables = {name: {"function": f"{path.name}:{name}"} for name in functions}
+        source = CaseText("").with_tables({"outcomes": tables})
         if not functions:
             source.report("defines no function whose name begins with a letter")
     found = outcomes_in_text(source, path.parent)
@@ -181,11 +180,9 @@ def bar_faults(outcomes: Iterable[str]) -> dict[str, str]:
     """Return the faults of names of outcomes that the error bar of another number has in tables, by name."""
     others = {*outcomes, *KEY_FIGURES}
     stems = {name: name.removesuffix("_bar") for name in outcomes if name.endswith("_bar")}
-    return {
-        name: f"{name}: is the column of the error bar of {stem}; choose another name"
-        for name, stem in stems.items()
-        if stem in others
-    }
+    taken = {name: stem for name, stem in stems.items() if stem in others}
+    words = "is the column of the error bar of {}; choose another name"
+    return {name: f"{name}: {words.format(stem)}" for name, stem in taken.items()}
 
 
 def has_strengths(outcomes: Outcomes) -> bool:
@@ -196,10 +193,8 @@ def has_strengths(outcomes: Outcomes) -> bool:
 def _name_fault(name: object, others: Outcomes) -> str:
     """Return the fault of an outcome's name beside `others`; empty if there is none."""
     if not isinstance(name, str) or not re.fullmatch(rf"[A-Za-z][A-Za-z0-9_]{{,{LONGEST_NAME - 1}}}", name):
-        return (
-            f"{as_toml(name)}: the name of an outcome is a letter, then letters, digits and underscores, at most "
-            f"{LONGEST_NAME}"
-        )
+        rule = "the name of an outcome is a letter, then letters, digits and underscores, at most"
+        return f"{as_toml(name)}: {rule} {LONGEST_NAME}"
     if name.lower() in RUN_COLUMNS:
         return f"{name}: is a column of every sweep; choose another name"
     other = next((other for other in others if other.lower() == name.lower()), None)
@@ -325,11 +320,8 @@ def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | No
     if needed is not None and needed not in beside:
         section.report(f'margin: "{name}" needs a section [{needed}] of the case', "margin")
         return None
-    sections = {
-        each: question.in_sweeps(beside[each])
-        for each, question in QUESTIONS.items()
-        if each in beside and (name == LEAST or each == needed)
-    }
+    asked = [each for each in QUESTIONS if each in beside and (name == LEAST or each == needed)]
+    sections = {each: QUESTIONS[each].in_sweeps(beside[each]) for each in asked}
     definition = {"margin": name, "body": owner, **{each: _entries(each, value) for each, value in sections.items()}}
     text = json.dumps({key: value for key, value in definition.items() if value is not None}, sort_keys=True)
     return StudyOutcome("", "", text, partial(of_margin, name, owner, tuple(sections.items())), has_strengths=True)
@@ -360,9 +352,8 @@ def _of_function(section: Section, folder: Path) -> StudyOutcome | None:
             section.report(f"{file}{f', line {line}' if line else ''}: {message}", "function")
         return None
     if function not in functions:
-        hint = synonyms.closest(function, tuple(functions)) or (
-            f"; there are {', '.join(functions)}" if functions else ""
-        )
+        known = f"; there are {', '.join(functions)}" if functions else ""
+        hint = synonyms.closest(function, tuple(functions)) or known
         section.report(f'there is no function "{function}" in {file}{hint}', "function")
         return None
     definition = {"function": function, "file": digest(text)}
@@ -403,11 +394,10 @@ def _of_callable(function: Callable[..., Any]) -> StudyOutcome:
     with contextlib.suppress(Exception):  # The function may be anything that can be called.
         content = pickle.dumps(function)
         module = inspect.getsource(inspect.getmodule(function))  # type: ignore[arg-type]
-    definition = json.dumps(
-        {"function": getattr(function, "__qualname__", ""), "file": digest(f"{code!r}{content!r}{module}")}
-    )
+    file = digest(f"{code!r}{content!r}{module}")
     unit = printable(string("the attribute unit", getattr(function, "unit", "")))
-    return StudyOutcome("", unit, definition, function)
+    definition = {"function": getattr(function, "__qualname__", ""), "file": file}
+    return StudyOutcome("", unit, json.dumps(definition), function)
 
 
 def _functions(path: Path, text: str) -> dict[str, str]:

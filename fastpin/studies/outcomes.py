@@ -182,9 +182,8 @@ def pickled(outcome: StudyOutcome) -> bytes:
     try:
         return pickle.dumps(outcome)
     except Exception as error:  # The class of the function may be anyone's.
-        raise FastpinError(
-            f"can't be sent to workers, which import it by its name; write a function of a module ({error})"
-        ) from None
+        words = "can't be sent to workers, which import it by its name; write a function of a module"
+        raise FastpinError(f"{words} ({error})") from None
 
 
 def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Result) -> dict[str, OutcomeValue]:
@@ -312,18 +311,13 @@ def bar_of_taken(quantity: str, take: str, span: str, interface: str, result: Re
     if not states:
         return math.nan
     readings = np.array([of(state) for state in states])
-    lowest, highest = states[ties.top(-readings)], states[ties.top(readings)]
-    ends = {
-        "range": [lowest, highest],
-        "smallest": [lowest],
-        "largest": [highest],
-        "largest magnitude": [states[ties.top(np.abs(readings))]],
-    }
+    sizes = {"smallest": [-readings], "largest magnitude": [np.abs(readings)], "range": [-readings, readings]}
+    ends = [states[ties.top(each)] for each in sizes.get(take, [readings])]
     if result.coarse is None:
-        return math.nan if all(QUANTITIES[quantity].is_resolved(state) for state in ends[take]) else math.inf
+        return math.nan if all(QUANTITIES[quantity].is_resolved(state) for state in ends) else math.inf
     value, other = (taken(quantity, take, span, "pin", each) for each in (result, result.coarse))
     kind = "width" if take == "range" else QUANTITIES[quantity].kind
-    return value_bar(quantity, value, _beside(kind, value, other), ends[take])
+    return value_bar(quantity, value, _beside(kind, value, other), ends)
 
 
 def of_last_cycle(quantity: str, interface: str, result: Result) -> float:
@@ -463,9 +457,8 @@ def _life(result: Result, criterion: str, body: Body) -> float:
     """The life at the hot spot, cycles."""
     life = _hot_spot(result, criterion, body).life
     if math.isnan(life):
-        raise FastpinError(
-            f"the {owner_of(result.problem, body)}'s material has no constants for a life by {criterion}"
-        )
+        owner = owner_of(result.problem, body)
+        raise FastpinError(f"the {owner}'s material has no constants for a life by {criterion}")
     return life
 
 

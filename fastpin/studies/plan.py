@@ -400,10 +400,8 @@ def _axes(
         elif isinstance(value, dict):
             axes[name], spacings[name] = range_in(source, place, name, value)
         else:
-            allowed = "a list of values, or { from = 0.1, to = 1.0, count = 10 }"
-            source.report(
-                f"{name}: must be {allowed}, not {'an empty list' if value == [] else checks.as_toml(value)}", *place
-            )
+            allowed, given = "a list of values, or { from = 0.1, to = 1.0, count = 10 }", checks.as_toml(value)
+            source.report(f"{name}: must be {allowed}, not {'an empty list' if value == [] else given}", *place)
     return axes
 
 
@@ -420,18 +418,11 @@ def varied_fields(
         if value is None:  # This fault is reported already.
             continue
         is_factor = names == ("loads",) and set(value if isinstance(value, dict) else ()) <= set(_RANGE_KEYS)
-        if (
-            isinstance(value, dict)
-            and not is_factor
-            and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES)
-        ):
+        is_section = len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES
+        is_term = names[:2] in PROFILES and isinstance(value, dict) and not set(value) <= set(_RANGE_KEYS)
+        if isinstance(value, dict) and ((is_section and not is_factor) or is_term):
             yield from varied_fields(source, base, value, here, names)
-            continue
-        if isinstance(value, dict) and names[:2] in PROFILES and not set(value) <= set(_RANGE_KEYS):
-            yield from varied_fields(source, base, value, here, names)  # the keys of a term
-            continue
-        fault = _field_fault(names, base)
-        if fault:
+        elif fault := _field_fault(names, base):
             source.report(fault, *here)
         else:
             yield here, ".".join(names), value

@@ -83,14 +83,11 @@ def key_figures(result: Result) -> dict[str, Any]:
     figures |= {"states": len(result), "nodes": result.grid.size}
     if not result.complete:
         return figures
-    last = result[-1]
-    start, stop = angles.interval_from_bottom(*last.contact[_widest(last.contact)]) if last.contact else (None, None)
-    figures |= {
-        **{name: in_degrees(of, taken(of, take, "history", "pin", result)) for name, (of, take) in TAKEN.items()},
-        "contact_start": start,
-        "contact_stop": stop,
-        "residual": max(max(state.residuals.values(), default=0.0) for state in result),
-    }
+    if ends := result[-1].contact:
+        start, stop = angles.interval_from_bottom(*ends[_widest(ends)])
+        figures |= {"contact_start": start, "contact_stop": stop}
+    figures |= {name: in_degrees(of, taken(of, take, "history", "pin", result)) for name, (of, take) in TAKEN.items()}
+    figures["residual"] = max(max(state.residuals.values(), default=0.0) for state in result)
     return {name: _number(value) for name, value in figures.items()}
 
 

@@ -210,13 +210,11 @@ def load(directory: str | Path) -> list[dict[str, Any]]:
         If the directory holds no index, or the index can't be used.
     """
     with Index(file_path("directory", directory)) as index:
-        outcomes, bars = index.outcomes(), index.bars()
-        return [
-            row
-            | {name: value.value for name, value in outcomes.get(row["id"], {}).items()}
-            | {bar_column(name): bar for name, bar in bars.get(row["id"], {}).items()}
-            for row in index.rows()
-        ]
+        outcomes, bars, found = index.outcomes(), index.bars(), index.rows()
+        for row in found:
+            row |= {name: value.value for name, value in outcomes.get(row["id"], {}).items()}
+            row |= {bar_column(name): bar for name, bar in bars.get(row["id"], {}).items()}
+        return found
 
 
 def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
@@ -309,12 +307,9 @@ def _missing_outcomes(index: Index, plan: Plan, points: dict[str, Point], result
     """Return the names of the outcomes that finished runs lack, by run."""
     if not plan.outcomes:
         return {}
-    known = index.outcomes()
-    missing = {
-        run: [name for name in plan.outcomes if name not in known.get(run, {})]
-        for run, (state, _) in _now(index, points, results).items()
-        if state == DONE
-    }
+    known, now = index.outcomes(), _now(index, points, results)
+    done = [run for run, (state, _) in now.items() if state == DONE]
+    missing = {run: [name for name in plan.outcomes if name not in known.get(run, {})] for run in done}
     return {run: names for run, names in missing.items() if names}
 
 
@@ -459,10 +454,8 @@ def _check_parts(parts: Sequence[Path]) -> None:
         with Index(part) as index:
             if not index.holds_plan():
                 continue
-            for name, words in (
-                ("version", "was made by another version of fastpin"),
-                ("plan", "belongs to another plan"),
-            ):
+            words_of = {"version": "was made by another version of fastpin", "plan": "belongs to another plan"}
+            for name, words in words_of.items():
                 if notes.setdefault(name, index.read_note(name)) != index.read_note(name):
                     raise InputError(str(part), f"{words} than {parts[0]}")
             for row in index.rows():
@@ -472,13 +465,9 @@ def _check_parts(parts: Sequence[Path]) -> None:
 
 def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
     """Copy the runs of another part, with their results, if their status there is better, or they are new here."""
-    statuses = index.statuses()
-    rank = (WAITING, FAILED, DONE)
-    wanted = [
-        run
-        for run, (state, _) in other.statuses().items()
-        if run not in statuses or rank.index(state) > rank.index(statuses[run][0])
-    ]
+    rank = {WAITING: 0, FAILED: 1, DONE: 2}
+    here = {run: rank[state] for run, (state, _) in index.statuses().items()}
+    wanted = [run for run, (state, _) in other.statuses().items() if rank[state] > here.get(run, -1)]
     for run in wanted:
         path = source / FOLDER / f"{run}.h5"
         (target / FOLDER / path.name).unlink(missing_ok=True)  # It would stand before a result in the index.

@@ -411,9 +411,8 @@ def _limits(source: CaseText, base: BaseCase, case: Case, given: tuple[KeyPath, 
         hint = "; a load with several points is varied by a factor, such as loads.P" if name.startswith("load.") else ""
         source.report(f"{words}{hint}", *place)
     elif not values[0] <= nominal <= values[-1]:
-        source.report(
-            f"{name}: the case has {nominal:g}, outside of the limits {values[0]:g} and {values[-1]:g}", *place
-        )
+        words = f"{name}: the case has {nominal:g}, outside of the limits {values[0]:g} and {values[-1]:g}"
+        source.report(words, *place)
     else:
         return FieldLimits(nominal, tuple(sorted({*values, nominal})), spacing)
     return None
@@ -461,11 +460,9 @@ def _extent(source: CaseText, fields: int) -> tuple[bool, int, int]:
     samples = root.checked("samples", whole_number, 0, MAX_RUNS)
     seed = root.checked("seed", whole_number, 0, 2**32 - 1)
     if fields > MOST_FIELDS and corners is not False:
-        source.report(
-            f"{fields} fields have {2**fields:,} corners, and those of at most {MOST_FIELDS} fields are run: write "
-            "corners = false, and leave the combinations to samples",
-            "corners" if "corners" in root else "tolerances",
-        )
+        words = f"{fields} fields have {2**fields:,} corners, and those of at most {MOST_FIELDS} fields are run: write "
+        words += "corners = false, and leave the combinations to samples"
+        source.report(words, "corners" if "corners" in root else "tolerances")
     return corners is not False, SAMPLES if samples is None else samples, 1 if seed is None else seed
 
 
@@ -485,9 +482,9 @@ def _samples(limits: Mapping[str, FieldLimits], count: int, seed: int) -> Iterat
     parts = {name: (random.permutation(count) + random.random(count)) / max(count, 1) for name in limits}
     for place in range(count):
         row = {}
-        for name, (low, high) in ((name, (each.low, each.high)) for name, each in limits.items()):
-            part = float(parts[name][place])
-            value = low * (high / low) ** part if limits[name].spacing == "log" else low + part * (high - low)
+        for name, each in limits.items():
+            part, low, high = float(parts[name][place]), each.low, each.high
+            value = low * (high / low) ** part if each.spacing == "log" else low + part * (high - low)
             row[name] = float(f"{value:.12g}")
         yield row
 

@@ -166,9 +166,7 @@ def with_values(
     values = {name: value for name, value in values.items() if name not in FACTORS}
     # Only loads change blocks.
     blocks_change = any(name.startswith("load.") for name in values)
-    new = {
-        name: _copied(table) if blocks_change or isinstance(table, dict) else table for name, table in tables.items()
-    }
+    new = {name: _copied(each) if blocks_change or isinstance(each, dict) else each for name, each in tables.items()}
     for name, value in values.items():
         _make_room(new, name, value, materials)
     for name, value in values.items():
@@ -217,10 +215,8 @@ def other_units(tables: dict[str, Any], name: str) -> str | None:
     if name == "contact.thickness" and "thickness" not in given:
         return f"{name}: the base case gives loads in N/m; with a thickness they would be in N; give it a thickness"
     if name in ("contact.hole_radius", "contact.clearance") and "load_parameter" in given:
-        return (
-            f"{name}: the base case gives a load_parameter, and loads in units of F; vary contact.load_parameter, or "
-            "take a base case with hole_radius, clearance and loads in N/m"
-        )
+        words = f"{name}: the base case gives a load_parameter, and loads in units of F; vary contact.load_parameter"
+        return f"{words}, or take a base case with hole_radius, clearance and loads in N/m"
     return None
 
 

@@ -97,10 +97,8 @@ class Pool:
         try:
             first.result()
         except BrokenExecutor:
-            raise FastpinError(
-                "worker processes can't be started; a script that runs a sweep must do so under "
-                'if __name__ == "__main__", because they import it'
-            ) from None
+            words = 'a script that runs a sweep must do so under if __name__ == "__main__", because they import it'
+            raise FastpinError(f"worker processes can't be started; {words}") from None
 
     def stop(self, busy: bool = True) -> None:
         """End the workers. Busy workers are killed."""
