@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from fastpin.casefile.toml_text import Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.angles import DEGREE, angle_at, meant_degrees
-from fastpin.model.checks import any_text, as_toml, number, whole_number
+from fastpin.model.checks import any_text, as_toml, number, unknown_key, whole_number
 from fastpin.model.problem import checked_gap
 from fastpin.model.profile import MOST_TERMS, NO_GAP, InitialGap, Profile, ProfileKind
 from fastpin.model.profile_terms import MOST_ORDER, Crown, Flat, Harmonic, Zone
@@ -207,8 +207,7 @@ def _from_table(name: str, table: Mapping[str, Any]) -> Profile:
     keys, optional, make = WORDS[kinds[0]]
     for key in table:
         if key not in keys:
-            hint = closest(str(key), keys) or f"; the keys are {', '.join(keys)}"
-            raise InputError(name, f'unknown key "{key}" beside {kinds[0]}{hint}')
+            raise InputError(name, unknown_key(key, keys, f" beside {kinds[0]}"))
     values = {key: table.get(key, optional.get(key)) for key in keys}
     for key, value in values.items():
         if value is None:

@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 
 from fastpin.casefile.toml_faults import HEADER, KEY, KEY_LINE, STRING_OR_COMMENT, syntax_message
 from fastpin.errors import CaseFileError, InputError, printable
-from fastpin.model.checks import as_toml, choice, instance, number, why_unreadable
+from fastpin.model.checks import as_toml, choice, instance, number, unknown_key, why_unreadable
 from fastpin.model.inputs import HDF5_SIGNATURE, open_input
 from fastpin.model.synonyms import closest, meant
 from fastpin.model.unit_systems import SI, checked_system, is_system
@@ -203,9 +203,9 @@ class CaseText:
             raise TooManyFaultsError
 
     def report_unknown(self, name: str, hint: str, where: str = " before the first section") -> None:
-        """Report an unknown section, or an unknown key `where` no section is. The message ends with `hint`."""
+        """Report a section, or a key `where` no section is, that is not known. The message ends with `hint`."""
         section = written(name, self.root.table[name])
-        self.report(f"unknown section {section}{hint}" if section else f'unknown key "{name}"{where}{hint}', name)
+        self.report(f"unknown section {section}{hint}" if section else unknown_key(name, (), where, hint), name)
 
     def check_sections(self, keys: Mapping[str, Collection[str]], blocks: Collection[str]) -> None:
         """Report unknown sections and keys of a file with a title and units.
@@ -358,11 +358,11 @@ class Section:
         hint : callable, optional
             Gives the end of the message for a key in place of these rules.
         """
-        known, usual = tuple(allowed), otherwise or f"; the keys are {', '.join(allowed)}"
+        known = tuple(allowed)
         for key in self.table:
             if key not in known:
-                end = (closest(str(key), known) or usual) if hint is None else hint(key)
-                self.report(f'unknown key "{key}"{where}{end}', str(key))
+                end = hint(key) if hint else (closest(str(key), known) or otherwise) if otherwise else None
+                self.report(unknown_key(key, known, where, end), str(key))
 
     def require(self, key: str, hint: str = "") -> None:
         """Report the key if it is missing. The message ends with `hint`.

@@ -144,6 +144,22 @@ def choice(field: str, value: object, allowed: Sequence[str]) -> str:
     raise InputError(field, f"must be {alternatives(allowed)}, not {as_toml(value)}{hint}")
 
 
+def unknown_key(key: object, keys: Sequence[str], where: str = "", end: str | None = None) -> str:
+    """Return the message on a key that a table does not have.
+
+    Parameters
+    ----------
+    keys : sequence of str
+        The keys of the table. They give the end of the message: a hint at the key that is meant, or all keys.
+    where : str
+        Words on the table, such as " in [pin]".
+    end : str, optional
+        Another end.
+    """
+    usual = f"; the keys are {', '.join(keys)}"
+    return f"unknown key {as_toml(key)}{where}{closest(str(key)[:LONGEST_TEXT], keys) or usual if end is None else end}"
+
+
 def known_name(field: str, name: object, known: Iterable[str]) -> None:
     """Check a name of a library. An unknown one raises :class:`UnknownNameError`, which says which name is meant."""
     try:

@@ -330,7 +330,7 @@ def _leaves(
 
 
 def check_root(source: CaseText, keys: Mapping[str, str] = ROOT_KEYS, varied_in: str = "[grid]") -> None:
-    """Report unknown sections, and unknown keys before the first section. `keys` are those of the plan, as written."""
+    """Report sections, and keys before the first section, that a plan does not have. `keys` are shown as written."""
     for key, value in source.root.table.items():
         if key in keys:
             continue

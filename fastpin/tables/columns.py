@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from fastpin.errors import InputError
-from fastpin.model.checks import LONGEST_TEXT, as_toml, is_whole, number, string
+from fastpin.model.checks import LONGEST_TEXT, as_toml, is_whole, number, string, unknown_key
 from fastpin.model.loads import LOADS, load_index
 from fastpin.model.synonyms import closest
 from fastpin.tables.load_units import is_unit, is_unit_of, unit_name
@@ -90,8 +90,8 @@ def column_choice(name: str, given: object) -> ColumnChoice:
         raise InputError(name, f"must be a column of the CSV file, such as {example}, not {as_toml(given)}")
     for key in given:
         if key not in COLUMN_KEYS:
-            hint = closest(str(key)[:LONGEST_TEXT], COLUMN_KEYS)
-            raise InputError(name, f"unknown key {as_toml(key)}; the keys are {', '.join(COLUMN_KEYS)}{hint}")
+            end = f"; the keys are {', '.join(COLUMN_KEYS)}{closest(str(key)[:LONGEST_TEXT], COLUMN_KEYS)}"
+            raise InputError(name, unknown_key(key, (), end=end))
     if "column" not in given:
         raise InputError(name, "column is missing: the header of a column of the CSV file, or its number")
     field, column = f"{name}.column", given["column"]

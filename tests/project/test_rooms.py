@@ -26,7 +26,7 @@ MOST = {
     "private functions of the core used once": 157,
     "classes of the core": 202,
     "constants of the core": 516,
-    "places that say unknown key": 6,
+    "places that say unknown key": 1,
 }
 """The most that each number may be. A smaller number takes its place here."""
 
