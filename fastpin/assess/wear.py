@@ -57,7 +57,9 @@ RACE_OUTCOMES = {
     "damage": outputs.Output("damage", "", lambda found: found.damage[-1].max()),
     "race": outputs.Output("race", "class", classes={int(race): race.words for race in Race}),
 }
-"""Outcomes of a :class:`fastpin.damage.WornFatigue`: cycles until a crack starts, largest sum of damage, who wins."""
+"""Outcomes of a :class:`fastpin.damage.WornFatigue`: cycles until a crack starts, largest sum of damage, who wins. The
+life is a median life, without residual stress.
+"""
 
 DEBRIS = "debris is not modelled"
 """A limit of the model that every report names."""
