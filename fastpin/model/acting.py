@@ -59,9 +59,8 @@ def check_largest(problem: Problem, largest: Mapping[str, float]) -> None:
             '(section 4 of the paper); use pin_load = "centre"',
         )
     if problem.held and "M" in largest:
-        raise InputError(
-            "M", f'the moment is a reaction where rotation = "{problem.rotation}"; leave it out or let the pin rotate'
-        )
+        words = f'the moment is a reaction where rotation = "{problem.rotation}"; leave it out or let the pin rotate'
+        raise InputError("M", words)
     if not problem.held and "rotation" in largest:
         raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed" or "spring"')
     for place, is_driven in enumerate(problem.driven):

@@ -122,9 +122,9 @@ def converted(value: Any, kinds: KeyKinds, way: Callable[[str, float], float], u
     """
     kinds = {ITSELF: kinds} if isinstance(kinds, str) else kinds
     if isinstance(value, Mapping):
-        given = value if kinds is not LAW or unit is None else {"unit": unit, **value}
+        given = {"unit": unit, **value} if "unit" in kinds and unit is not None else value
         found = {key: converted(item, kinds.get(key, kinds.get(ANY, {})), way, unit) for key, item in given.items()}
-        if kinds is FATIGUE and all(isinstance(found.get(name), (int, float)) for name in ("curve_a", "curve_b")):
+        if "curve_c" in kinds and all(isinstance(found.get(name), (int, float)) for name in ("curve_a", "curve_b")):
             found["curve_a"] += found["curve_b"] * math.log10(way("traction", 1.0))
         return found
     if isinstance(value, (list, tuple)):
