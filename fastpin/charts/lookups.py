@@ -286,13 +286,9 @@ def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str
 
 def _check_joint(problem: Problem) -> None:
     """Raise :class:`InputError` if the charts do not cover a joint."""
-    refused = {
-        "pin_body": problem.pin_body != SOLID_PIN,
-        "plate_body": problem.plate_body != INFINITE_PLATE,
-        "gap": bool(problem.gap),
-        "drive": problem.drive != "force",
-        "hub_radius": problem.hub_radius is not None,
-    }
+    refused = {"pin_body": problem.pin_body != SOLID_PIN, "plate_body": problem.plate_body != INFINITE_PLATE}
+    refused |= {"gap": bool(problem.gap), "drive": problem.drive != "force"}
+    refused["hub_radius"] = problem.hub_radius is not None
     for field, is_refused in refused.items():
         if is_refused:
             raise InputError(field, "is not in the charts: solve this joint")

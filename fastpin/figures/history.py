@@ -70,13 +70,8 @@ def _draw(look: Look, problem: Problem, folded: Folded) -> Sheet:
             panel.plot(np.arange(len(loads)), factor * columns[name], **style, **dots)
             entries.append((name, style))
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-        other = {
-            "traction": "remote stress",
-            "rotation": "prescribed",
-            "displacement": "prescribed",
-            "ratio": "relative",
-            "temperature": "rise of",
-        }
+        other = {"traction": "remote stress", "ratio": "relative", "temperature": "rise of"}
+        other |= dict.fromkeys(("rotation", "displacement"), "prescribed")
         panel.set_ylabel(quantity(f"{other.get(kind, kind)} {', '.join(names)}", label))
         panel.set_xlim(0.0, len(loads) - 1.0)
         _shade(panel, repeated, panel is axes[0, 0])

@@ -106,21 +106,12 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
         panel.set_title(f"{plate.name}{words}", fontsize=8.5, loc="left", parse_math=False)
     sheet.axes[-1, 0].set_xlabel(quantity("x", size.name))
     mappable = sheet.axes[0, 0].collections[0]
-    sheet.figure.colorbar(
-        mappable, ax=list(sheet.axes[:, 0]), label=quantity("hoop stress", unit), shrink=0.8, pad=0.02
-    )
-    style: Any = {"linewidth": 3.0}
-    entries = [
-        Line2D([], [], color="black", label="sticks", **style),
-        Line2D([], [], color=COLOURS[1], label="slips", **style),
-    ]
-    sheet.legend(
-        [
-            *entries,
-            Line2D([], [], color="black", marker=">", label=f"largest force {of_joint['force'].text(longest, 3)}"),
-        ],
-        3,
-    )
+    label, panels = quantity("hoop stress", unit), list(sheet.axes[:, 0])
+    sheet.figure.colorbar(mappable, ax=panels, label=label, shrink=0.8, pad=0.02)
+    looks = {"sticks": "black", "slips": COLOURS[1]}
+    entries = [Line2D([], [], color=colour, label=label, linewidth=3.0) for label, colour in looks.items()]
+    words = f"largest force {of_joint['force'].text(longest, 3)}"
+    sheet.legend([*entries, Line2D([], [], color="black", marker=">", label=words)], 3)
     sheet.head(look.title)
     return sheet
 
@@ -176,13 +167,8 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
     factor, unit = joint_units(joint)["force"].scale([max(values) for values in forces.values()])
     few = len(points) <= 60
     for k, (_, values) in enumerate(forces.items()):
-        panel.plot(
-            points,
-            factor * np.array(values),
-            marker="o" if few else "",
-            markersize=3.5,
-            **line(k % MAX_NAMED, k // MAX_NAMED),
-        )
+        style = line(k % MAX_NAMED, k // MAX_NAMED)
+        panel.plot(points, factor * np.array(values), marker="o" if few else "", markersize=3.5, **style)
     draw_grid(panel)
     panel.set_xlabel("load point")
     panel.set_ylabel(quantity("force of the pin", unit))

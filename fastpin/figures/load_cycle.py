@@ -25,7 +25,6 @@ from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import Frame, Subject, with_cycles
 from fastpin.model.checks import as_toml, choice, instance, items, string
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
 from fastpin.solver.result import Result
 from fastpin.states.choice import chosen_cycles, span_of
@@ -310,14 +309,10 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
     words, conjugate = CONJUGATES[kind]
     words = "displacement of the pin" if kind == "force" else words
     sign, shift = (1.0, "ux") if name == "Q" else (-1.0, "uy")  # a displacement gets the sign of the load
-    moves = [
-        np.array([sign * state.load[shift] for state in cycle.states])
-        if _prescribed(cycle.states[0].problem, name, abscissa)
-        else loop.displacement
-        for cycle, loop in zip(cycles, loops, strict=True)
-    ]
-    if prescribed := _prescribed(problem, name, abscissa):
-        words = f"prescribed displacement {prescribed}"
+    moves = [loop.displacement for loop in loops]
+    if dict(zip(("Q", "P"), problem.driven, strict=True)).get(name) and abscissa != "pin":
+        words = f"prescribed displacement {'ux' if name == 'Q' else '−uy'}"
+        moves = [np.array([sign * state.load[shift] for state in cycle.states]) for cycle in cycles]
     moved, moved_unit = _displacement_scale(np.concatenate(moves), unit[conjugate])
     if kind == "traction":  # of a square unit, which has no prefixes
         moved = 1.0 / max(float(np.abs(np.concatenate(moves)).max()), 1e-300)
@@ -333,12 +328,6 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
             area = f"area {'0' if is_rounding else style.short(float(loop.work), unit['energy'])}"
         panel.text(0.0, 1.02, area, fontsize=8.0, ha="left", va="bottom", transform=panel.transAxes)
     panel.xaxis.set_major_locator(MaxNLocator({1: 9, 2: 6, 3: 3}[across], steps=[1, 2, 5, 10]))
-
-
-def _prescribed(problem: Problem, name: str, abscissa: Abscissa | None) -> str:
-    """Words for the prescribed displacement over which a load is drawn; empty if it is drawn over that of the pin."""
-    driven = dict(zip(("Q", "P"), problem.driven, strict=True)).get(name, False)
-    return {"Q": "ux", "P": "−uy"}[name] if driven and abscissa != "pin" else ""
 
 
 def dissipated_words(cycle: LoadCycle) -> str:

@@ -144,9 +144,7 @@ def _draw_scar(look: Look, life: WearResult, shown: Sequence[WornCycle]) -> Shee
         factor, name = unit[kind].scale([highest])
         for place, values in enumerate(curves):
             panel.plot(angles[order], factor * values[order], **line(place, place))
-        panel.set_ylim(0.0, 1.08 * factor * highest or 1.0)
-        if not highest:
-            panel.set_yticks([0.0])
+        _from_zero(panel, factor * highest)
         panel.set_ylabel(quantity(words, name))
     upper.invert_yaxis()  # a scar goes down
     _contact_axis(lower, life, angles)
@@ -162,6 +160,13 @@ def _draw_scar(look: Look, life: WearResult, shown: Sequence[WornCycle]) -> Shee
     handles = [Line2D([], [], label=f"{each.cycle:,}", **line(k, k)) for k, each in enumerate(shown)]
     sheet.legend(handles, min(len(handles), 4), "cycles")
     return sheet
+
+
+def _from_zero(panel: Axes, highest: float) -> None:
+    """Let an axis of values begin at zero. It has no other tick if all values are zero."""
+    panel.set_ylim(0.0, 1.08 * highest or 1.0)
+    if not highest:
+        panel.set_yticks([0.0])
 
 
 def _contact_axis(panel: Axes, life: WearResult, angles: np.ndarray) -> None:
@@ -220,9 +225,7 @@ def _draw_wear(look: Look, life: WearResult) -> Sheet:
             panel.yaxis.set_major_locator(LogLocator(numticks=5))
             panel.yaxis.set_minor_locator(NullLocator())
             continue
-        panel.set_ylim(0.0, 1.08 * factor * highest or 1.0)
-        if not highest:
-            panel.set_yticks([0.0])
+        _from_zero(panel, factor * highest)
     cycles_axis(list(sheet.axes[:, 0]), numbers)
     sheet.figure.align_ylabels(sheet.axes)
     sheet.head(look.title, f"{followed_words(life)}, {life[-1].solved:,} solved", caption=life_caption(life))

@@ -291,11 +291,8 @@ class Frame:
                 points[:, 0] += 360.0 * round((0.5 * sum(self.limits) - middle) / 360.0)
             parts += [points, gap]
         angle, pressure, shear = np.concatenate(parts[:-1] if len(parts) > 1 else parts).T
-        return (
-            angle,
-            style.without_rounding(pressure),
-            style.without_rounding(shear, float(np.nanmax(pressure, initial=0.0))),
-        )
+        highest = float(np.nanmax(pressure, initial=0.0))
+        return angle, style.without_rounding(pressure), style.without_rounding(shear, highest)
 
     def _rolled(self, points: np.ndarray) -> np.ndarray:
         """A curve all round that begins and ends where the axis does."""

@@ -112,11 +112,8 @@ def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
     """
     drawn = subject.states(states, most=MOST_COLUMNS, whole=True)
     first, last = (point_name(load_point(drawn[place])) for place in (0, -1))
-    part = (
-        f"Only {len(drawn):,} of {drawn.total:,} states, load points {first} to {last}: stick"
-        if len(drawn) < drawn.total
-        else "Stick"
-    )
+    some = f"Only {len(drawn):,} of {drawn.total:,} states, load points {first} to {last}: stick"
+    part = some if len(drawn) < drawn.total else "Stick"
     notes = drawn.notes
     if len(drawn) > MOST_COLUMNS:
         columns, words = long_columns(drawn)

@@ -151,17 +151,9 @@ def fitted_legend(figure: Figure, handles: list[Artist], columns: int, title: st
     """Add a legend below the panels, in a font that fits the figure's width (4 to 8 points)."""
     size = 8.0
     while True:
-        legend = figure.legend(
-            handles=handles,
-            loc="outside lower center",
-            ncols=columns,
-            fontsize=size,
-            handlelength=2.8,
-            columnspacing=2.0,
-            title=title or None,
-            title_fontsize=size,
-            alignment="left",
-        )
+        sizes: Any = {"fontsize": size, "title_fontsize": size, "handlelength": 2.8, "columnspacing": 2.0}
+        place: Any = {"loc": "outside lower center", "alignment": "left"}
+        legend = figure.legend(handles=handles, ncols=columns, title=title or None, **place, **sizes)
         share = legend.get_window_extent().width / figure.bbox.width
         if share <= 0.98 or size <= 4.0:
             return
@@ -217,12 +209,8 @@ def points_text(states: Sequence[State]) -> str:
 
 def load_text(states: Sequence[State], index: int, name: str) -> str:
     """A load of one of the states with its unit as text. All loads of one kind have the same unit."""
-    same_kind = [
-        state.load[other]
-        for state in states
-        for other in loads.LOADS
-        if loads.LOAD_KIND[other] == loads.LOAD_KIND[name]
-    ]
+    alike = [other for other in loads.LOADS if loads.LOAD_KIND[other] == loads.LOAD_KIND[name]]
+    same_kind = [state.load[other] for state in states for other in alike]
     of_kind = units(states[0].problem)[loads.LOAD_KIND[name]]
     factor, unit = of_kind.scale(same_kind)
     load = states[index].load[name]

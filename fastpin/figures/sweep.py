@@ -232,9 +232,8 @@ def draw_classes(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.ndarray,
             for j, k in np.argwhere(numbers == number)
         ]
         if cells:
-            panel.add_collection(
-                PolyCollection(cells, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False)
-            )
+            fill: dict[str, Any] = {"facecolor": colour, "edgecolor": "none", "antialiased": False}
+            panel.add_collection(PolyCollection(cells, linewidth=0.0, **fill))
         if cells and hatch:
             panel.add_collection(PolyCollection(cells, facecolor="none", edgecolor=HATCH, linewidth=0.0, hatch=hatch))
     panel.add_collection(LineCollection(class_borders(x, y, numbers), colors="black", linewidths=1.6))
@@ -360,11 +359,8 @@ def _explain(sheet: Sheet, chart: Chart) -> None:
     handles: list[Any] = [*class_patches(chart.classes, _known_values(chart))] if chart.classes else []
     handles += [Patch(label="failed run", **_FAILED)] * failed + [Patch(label="no value", **_OPEN)] * empty
     if any(unsure.any() for unsure in _unsure(chart)):
-        words = (
-            "another class on the coarse grid"
-            if chart.classes
-            else "error bar not known, or above the differences to all sides"
-        )
+        of_number = "error bar not known, or above the differences to all sides"
+        words = "another class on the coarse grid" if chart.classes else of_number
         handles.append(Line2D([], [], label=words, **_UNSURE))
     _add_legend(sheet, handles, 4)
 

@@ -87,10 +87,8 @@ def cycle_figure(curves: Sequence[Curve], parameter: str) -> Figure:
     words = LOADS[_pin_load(curves[0])]
     lines = {load: line(index, index) for index, load in enumerate(words)}
     columns = [chosen(curves, **{parameter: value}) for value in values_of(curves, parameter)]
-    layout = [
-        [Panel("N", column, _panel_title(column[0], parameter)) for column in columns],
-        [Panel("T", column) for column in columns],
-    ]
+    upper = [Panel("N", column, _panel_title(column[0], parameter)) for column in columns]
+    layout = [upper, [Panel("T", column) for column in columns]]
     legend = [(words[load], style) for load, style in lines.items()]
     heading = case_lines(curves[0], parameter)
     return traction_figure(layout, lambda curve: lines[curve.parameters["load"]], legend, heading=heading)
@@ -99,12 +97,8 @@ def cycle_figure(curves: Sequence[Curve], parameter: str) -> Figure:
 def case_lines(curve: Curve, varied: str) -> list[str]:
     """Return the heading of a figure of fretting: all parameters but the `varied` one, which panels name."""
     parameters = curve.parameters
-    words = {
-        "pair": NAMES[parameters["pair"]],
-        "plane": "plane strain",
-        "mu": f"friction coefficient {parameters['mu']:g}",
-        "L_p": f"load parameter {parameters['L_p']:g}",
-    }
+    words = {"pair": NAMES[parameters["pair"]], "plane": "plane strain"}
+    words |= {"mu": f"friction coefficient {parameters['mu']:g}", "L_p": f"load parameter {parameters['L_p']:g}"}
     first = ", ".join(text for name, text in words.items() if name != varied)
     held, force, ratio = "pin that can't rotate", "P at its centre, then +Q, then −Q", "Q/(μP)"
     if _pin_load(curve) == "body":
@@ -203,15 +197,9 @@ def _name_steady_states(panel: Axes, curves: Sequence[Curve]) -> None:
         if curve.parameters["cycle"] == CYCLES:
             largest = int(np.argmax(np.abs(curve["T"])))
             side = math.copysign(1.0, curve["angle_deg"][largest])
-            panel.annotate(
-                SYMBOLS[str(curve.parameters["load"])],
-                (curve["angle_deg"][largest], curve["T"][largest]),
-                (7.0 * side, 0.0),
-                textcoords="offset points",
-                ha="left" if side > 0.0 else "right",
-                va="center",
-                fontsize=9.0,
-            )
+            words, at = SYMBOLS[str(curve.parameters["load"])], (curve["angle_deg"][largest], curve["T"][largest])
+            look: Any = {"ha": "left" if side > 0.0 else "right", "va": "center", "fontsize": 9.0}
+            panel.annotate(words, at, (7.0 * side, 0.0), textcoords="offset points", **look)
 
 
 FIGURES = (

@@ -65,13 +65,8 @@ FLOOR = 1e-3
 
 def floor(quantity: str, nodes: int) -> float:
     """Return the smallest error of a quantity that exceeds the discretisation error with `nodes` nodes."""
-    larger = {
-        "stick size, -Q": 8e-3,
-        "stick size, -Q, mu = 0.2": 8e-3,
-        "peak shear, -Q": 6e-3,
-        "what the stress adds, balanced": 3e-3,
-        "what the stress adds, uniaxial": 3e-3,
-    }
+    larger = {"stick size, -Q": 8e-3, "stick size, -Q, mu = 0.2": 8e-3, "peak shear, -Q": 6e-3}
+    larger |= {"what the stress adds, balanced": 3e-3, "what the stress adds, uniaxial": 3e-3}
     if quantity.startswith("mu ="):  # unlike materials
         larger[quantity] = 0.03 if quantity.startswith("mu = 0.5 ") else 8e-3
     return larger.get(quantity, FLOOR) * max(1.0, 400.0 / nodes)
@@ -101,12 +96,9 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 def _curve(panel: str, quantity: str, rows: np.ndarray, least: float) -> Curve:
     load_parameter, error = rows.T
-    right = {
-        f"right_to_{100.0 * level:g}_percent_from": (
-            threshold(load_parameter, error, level) if level > least else math.nan
-        )
-        for level in LEVELS
-    }
+    limits = [threshold(load_parameter, error, level) if level > least else math.nan for level in LEVELS]
+    names = [f"right_to_{100.0 * level:g}_percent_from" for level in LEVELS]
+    right = dict(zip(names, limits, strict=True))
     shown = np.where(np.abs(error) >= least, error, math.nan)
     return Curve({"panel": panel, "quantity": quantity, **right}, {"L_p": load_parameter, "error": shown})
 

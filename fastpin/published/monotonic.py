@@ -40,25 +40,18 @@ def body_loads(
     legend : sequence of (str, int)
         Words and dashes of the first, second ... coefficient of all columns.
     """
-    lines = {
-        (load_parameter, coefficient): line(dashes, dashes)
-        for load_parameter, coefficients in friction.items()
-        for coefficient, (_, dashes) in zip(coefficients, legend, strict=True)
-    }
+    entries = [(words, line(dashes, dashes)) for words, dashes in legend]
+    lines: dict[tuple[float, float], Line] = {}
+    for value, coefficients in friction.items():
+        lines |= {(value, mu): style for mu, (_, style) in zip(coefficients, entries, strict=True)}
 
     def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
-        return [
-            traction_curve(pushed(pair, load_parameter, mu, nodes), pair=pair, L_p=load_parameter, mu=mu)
-            for load_parameter, mu in steps(list(lines), progress)
-        ]
+        cases = steps(list(lines), progress)
+        return [traction_curve(pushed(pair, value, mu, nodes), pair=pair, L_p=value, mu=mu) for value, mu in cases]
 
     def draw(curves: Sequence[Curve]) -> Figure:
-        return _column_figure(
-            curves,
-            lambda curve: lines[curve.parameters["L_p"], curve.parameters["mu"]],
-            [(words, line(dashes, dashes)) for words, dashes in legend],
-            f"{NAMES[pair]}, plane strain; body force F on the pin, downwards",
-        )
+        heading = f"{NAMES[pair]}, plane strain; body force F on the pin, downwards"
+        return _column_figure(curves, lambda one: lines[one.parameters["L_p"], one.parameters["mu"]], entries, heading)
 
     return PaperFigure(name, title, 101, compute, draw)
 
@@ -79,12 +72,11 @@ def compare_loads(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Return the tractions under a centre load and a body load, for three load parameters."""
     loads: tuple[PinLoad, PinLoad] = ("centre", "body")
     cases = [(load_parameter, pin_load) for load_parameter in (0.01, 0.1, 0.5) for pin_load in loads]
-    return [
-        traction_curve(
-            pushed("Ti/Al", load_parameter, 0.4, nodes, pin_load), L_p=load_parameter, mu=0.4, pin_load=pin_load
-        )
-        for load_parameter, pin_load in steps(cases, progress)
-    ]
+    curves = []
+    for value, pin_load in steps(cases, progress):
+        state = pushed("Ti/Al", value, 0.4, nodes, pin_load)
+        curves.append(traction_curve(state, L_p=value, mu=0.4, pin_load=pin_load))
+    return curves
 
 
 def draw_loads(curves: Sequence[Curve]) -> Figure:

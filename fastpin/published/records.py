@@ -173,13 +173,9 @@ def table(title: str, statement: str, sources: Sequence[str], rows: Sequence[Row
 
 def row_curves(rows: Sequence[Row]) -> list[Curve]:
     """Return a curve of one point for each row, for a CSV file."""
-    return [
-        Curve(
-            {"quantity": row.quantity, "unit": row.unit, "published": row.published, "verdict": row.verdict},
-            {"fastpin": np.array([row.ours]), "difference": np.array([row.difference], dtype=float)},
-        )
-        for row in rows
-    ]
+    names = ("quantity", "unit", "published", "verdict")
+    numbers = [{"fastpin": np.array([row.ours]), "difference": np.array([row.difference], dtype=float)} for row in rows]
+    return [Curve({name: getattr(row, name) for name in names}, own) for row, own in zip(rows, numbers, strict=True)]
 
 
 def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
@@ -237,15 +233,6 @@ def grey(dashes: int, width: float = 1.4) -> Line:
 def legend_below(panel: Axes, entries: Sequence[tuple[str, Line]], columns: int = 1, title: str = "") -> Legend:
     """Add a legend below a panel and its labels, and return it."""
     shown = [Line2D([], [], label=label, **{**style, "markevery": None}) for label, style in entries]
-    return panel.legend(
-        handles=shown,
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.2),
-        ncols=columns,
-        title=title or None,
-        fontsize=7.5,
-        title_fontsize=7.5,
-        handlelength=2.6,
-        labelspacing=0.3,
-        columnspacing=1.2,
-    )
+    spaces: Any = {"handlelength": 2.6, "labelspacing": 0.3, "columnspacing": 1.2}
+    place: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "fontsize": 7.5, "title_fontsize": 7.5}
+    return panel.legend(handles=shown, ncols=columns, title=title or None, **place, **spaces)

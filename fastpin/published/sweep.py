@@ -143,13 +143,8 @@ def draw_half_angles(curves: Sequence[Curve]) -> Figure:
     contact.set_yticks(range(0, 91, 15))
     for panel in axes[0]:
         load_parameter_axis(panel)
-    stick.annotate(
-        "the whole contact\nsticks: ρ = ε",
-        (0.5, 39.5),
-        (0.55, 60.0),
-        fontsize=8.0,
-        arrowprops={"arrowstyle": "-", "linewidth": 0.7},
-    )
+    arrow = {"arrowstyle": "-", "linewidth": 0.7}
+    stick.annotate("the whole contact\nsticks: ρ = ε", (0.5, 39.5), (0.55, 60.0), fontsize=8.0, arrowprops=arrow)
     names = [f"friction coefficient {curve.parameters['mu']:g}" for curve in curves]
     add_legend(figure, list(zip(names, lines, strict=True)))
     return figure
@@ -183,11 +178,8 @@ def draw_peaks(curves: Sequence[Curve]) -> Figure:
     ratio.set_ylim(0.0, 1.03)
     for panel in axes[0]:
         load_parameter_axis(panel)
-    add_legend(
-        figure,
-        [(NAMES[pair], marked(colour)) for colour, pair in enumerate(pairs)],
-        [(f"friction coefficient {mu:g}", grey(dashes)) for dashes, mu in enumerate(friction)],
-    )
+    bodies = [(NAMES[pair], marked(colour)) for colour, pair in enumerate(pairs)]
+    add_legend(figure, bodies, [(f"friction coefficient {mu:g}", grey(dashes)) for dashes, mu in enumerate(friction)])
     return figure
 
 

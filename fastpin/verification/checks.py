@@ -116,11 +116,8 @@ def _peak_shear(state: State, ratio: float, part: float) -> float:
     """
     half = float(closed_forms.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
     border = half * float(closed_forms.cattaneo_mindlin_stick_ratio(ratio))
-    return abs(
-        float(
-            comparisons.cattaneo_mindlin(state, border, part * ratio, ratio, "unloading" if part < 1.0 else "loading")
-        )
-    )
+    branch: closed_forms.Branch = "unloading" if part < 1.0 else "loading"
+    return abs(float(comparisons.cattaneo_mindlin(state, border, part * ratio, ratio, branch)))
 
 
 FREE = Problem.from_load_parameter(UNLIKE, 0.05, 0.5, "body")

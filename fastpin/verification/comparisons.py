@@ -63,11 +63,8 @@ def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[
     list of float
         One difference for each state, >= 0, dimensionless.
     """
-    branches: list[tuple[float, closed_forms.Branch]] = [
-        (ratio, "loading"),
-        (-ratio, "unloading"),
-        (ratio, "reloading"),
-    ]
+    branches: list[tuple[float, closed_forms.Branch]]
+    branches = [(ratio, "loading"), (-ratio, "unloading"), (ratio, "reloading")]
     differences = []
     for state, (now, branch) in zip(states, branches, strict=True):
         shear = cattaneo_mindlin(state, state.theta - angles.BOTTOM, now, ratio, branch)
