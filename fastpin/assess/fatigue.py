@@ -166,11 +166,9 @@ def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
     failing = found.failure_probability(how.life)
     parts = [f"median life {spot.life * 10.0**found.shift:.4g}"] if found.shift else []
     parts += [] if math.isnan(failing) else [f"{failing:.3g} of the specimens fail within {how.life:.6g} {how.passes}"]
-    parts = [
-        ", ".join([f"life {spot.life:.4g} {how.passes}", *parts])
-        + f", damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}",
-        f"normal of the plane {math.degrees(spot.plane):z.2f} deg from +x",
-    ]
+    life = ", ".join([f"life {spot.life:.4g} {how.passes}", *parts])
+    parts = [f"{life}, damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}"]
+    parts += [f"normal of the plane {math.degrees(spot.plane):z.2f} deg from +x"]
     same: dict[frozenset[float], tuple[float, int, str]] = {}  # repeated states have the load points of the first ones
     for start, stop, times, done in zip(counted.start, counted.stop, counted.times, counted.damage, strict=True):
         share, before, ends = same.get(key := frozenset((start, stop)), (0.0, 0, f"{start:.6g} and {stop:.6g}"))
@@ -224,11 +222,10 @@ def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
 
     `over` is that of :func:`lines`. A body without damage has no angle, depth, plane and life: all None.
     """
-    bodies = [
-        outputs.document(DAMAGE, one, units(one.problem))
-        | outputs.document(OF_BODY, _Body(one, assessed.how, over), {})
-        for one in assessed.found
-    ]
+    bodies = []
+    for one in assessed.found:
+        body = outputs.document(OF_BODY, _Body(one, assessed.how, over), {})
+        bodies.append(outputs.document(DAMAGE, one, units(one.problem)) | body)
     found = outputs.document(HOW, assessed.how, {})
     return found | {"error": assessed.reason or None, "bodies": bodies}
 

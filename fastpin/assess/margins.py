@@ -77,19 +77,14 @@ def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, 
             return "infinite"
         return f"{value:.3g}" if row.kind == "ratio" else unit[row.kind].text(value, 4)
 
-    return [
-        (
-            row.subject,
-            shown(row, row.value),
-            shown(row, row.allowable),
-            verdict(row),
-            "-" if math.isnan(row.load_point) else point_name(row.load_point),
-            named_loads(problem, row.loads) if row.loads else "-",
-            "; ".join(filter(None, (row.remark, row.part)))
-            + (over_yield_words(over, row.owner) if over_yield_of(row, over) else ""),
-        )
-        for row in margins
-    ]
+    rows: list[tuple[str, ...]] = []
+    for row in margins:
+        point = "-" if math.isnan(row.load_point) else point_name(row.load_point)
+        loads = named_loads(problem, row.loads) if row.loads else "-"
+        yielded = over_yield_words(over, row.owner) if over_yield_of(row, over) else ""
+        remark = "; ".join(filter(None, (row.remark, row.part))) + yielded
+        rows.append((row.subject, shown(row, row.value), shown(row, row.allowable), verdict(row), point, loads, remark))
+    return rows
 
 
 class MarginRow(NamedTuple):

@@ -543,14 +543,10 @@ def aligned(rows: Sequence[Sequence[str]], sides: str) -> list[str]:
         "l" or "r" for each column: its cells stand to the left or to the right.
     """
     full = [row for row in rows if len(row) == len(sides)]
-    pads = [
-        (str.ljust if side == "l" else str.rjust, max(map(len, column)))
-        for side, column in zip(sides, zip(*full, strict=True), strict=True)
-    ]
-    return [
-        "  " + "  ".join(pad(cell, width) for cell, (pad, width) in zip(row, pads, strict=False)).rstrip()
-        for row in rows
-    ]
+    widths = [max(map(len, column)) for column in zip(*full, strict=True)]
+    pads = [(str.ljust if side == "l" else str.rjust, width) for side, width in zip(sides, widths, strict=True)]
+    padded = [[pad(cell, width) for cell, (pad, width) in zip(row, pads, strict=False)] for row in rows]
+    return [f"  {'  '.join(cells).rstrip()}" for cells in padded]
 
 
 def line_words(heading: str, names: Sequence[str], line: Repeat | LeftOut) -> str:

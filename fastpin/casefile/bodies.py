@@ -44,11 +44,8 @@ class BodySection(Section):
             and "dundurs" in self._source.root
             and "load_parameter" in self._source.section("contact")
         ):
-            self.report(
-                "material: with [dundurs] and load_parameter the moduli count in units of 1/beta* of pin and plate; "
-                "give E and nu of the bush",
-                "material",
-            )
+            words = "with [dundurs] and load_parameter the moduli count in units of 1/beta* of pin and plate"
+            self.report(f"material: {words}; give E and nu of the bush", "material")
             return None
         return material
 

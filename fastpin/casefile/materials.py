@@ -181,11 +181,8 @@ def _dundurs(section: Section, contact: Section, plane: str) -> MaterialPair | N
     if not section.present:
         return None
     convention = section.choice("convention", ("usual", "paper"))
-    values = {
-        "alpha": section.checked("alpha", number, -1.0, 1.0),
-        "beta": section.number("beta"),
-        "nu_pin": section.checked("nu_pin", number, 0.0, 0.5),
-    }
+    values = {"alpha": section.checked("alpha", number, -1.0, 1.0), "beta": section.number("beta")}
+    values["nu_pin"] = section.checked("nu_pin", number, 0.0, 0.5)
     for key in values:
         section.require(key)
     if "load_parameter" in contact:

@@ -251,10 +251,8 @@ def damage_sum(
     found = [fatigue(one, criterion, body, points=points, constants=constants).life for one in chosen]
     known = [life for life in found if life is not None]
     if len(known) < len(found):
-        raise InputError(
-            "criterion",
-            f"the {owner_of(chosen[0][0].problem, body)}'s material has no constants for a life by {criterion}",
-        )
+        owner = owner_of(chosen[0][0].problem, body)
+        raise InputError("criterion", f"the {owner}'s material has no constants for a life by {criterion}")
     counts = np.full(len(known), checks.whole_number("repeats", repeats, 1))
     return points.theta, lives.miner(counts, np.array(known))
 

@@ -181,12 +181,8 @@ class JointPin:
         checks.check_fields(self, checks.point, "at")
         checks.instance("material", self.material, Material, "a Material")
         checks.check_fields(self, checks.number, "radius", LEAST_RADIUS, MOST_RADIUS)
-        checks.set_fields(
-            self,
-            plates=tuple(
-                checks.string("plates", name) for name in checks.items("plates", self.plates, "a list of names")
-            ),
-        )
+        names = checks.items("plates", self.plates, "a list of names")
+        checks.set_fields(self, plates=tuple(checks.string("plates", name) for name in names))
         if not self.plates:
             raise InputError("plates", f"pin {self.name} goes through no plate")
         if len(set(self.plates)) < len(self.plates):

@@ -197,10 +197,8 @@ def _joint_system(
 ) -> tuple[PinsSystem, np.ndarray]:
     """The system of a joint, and the unit of each load, SI."""
     names, thick, radius = joint.load_names, joint.plates[0].thickness, joint.radius
-    places, pins = (
-        {plate.name: k for k, plate in enumerate(joint.plates)},
-        {pin.name: k for k, pin in enumerate(joint.pins)},
-    )
+    places = {plate.name: k for k, plate in enumerate(joint.plates)}
+    pins = {pin.name: k for k, pin in enumerate(joint.pins)}
     beta = joint.problem(*joint.sections[0]).surfaces.beta_star
     first = {plate.name: pin.at for pin, plate in reversed(joint.sections)}
     holes, sections = dict.fromkeys(places, 0), []

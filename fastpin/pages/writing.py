@@ -28,17 +28,13 @@ def pdf_of(page: Page) -> bytes:
     """Return a page as a PDF for A4 paper. Its fonts are inside it."""
     import typst
 
-    given = {"page": json.dumps(_plain(_document(page)))}
-    template, folder = str(FOLDER / "page.typ"), str(FOLDER)
-    return bytes(typst.compile(template, root=folder, font_paths=[str(FONTS)], sys_inputs=given))
-
-
-def _document(page: Page) -> dict[str, Any]:
-    """Return a page as the template takes it."""
     sections = [{"title": each.title, "parts": [_part(part) for part in each.parts]} for each in page.sections]
     about = [[name.capitalize(), value] for name, value in page.about.given().items()]
     texts = {name: getattr(page, name) for name in ("title", "lead", "head", "made")}
-    return {**texts, "about": about, "author": page.about.author, "sections": sections}
+    whole = {**texts, "about": about, "author": page.about.author, "sections": sections}
+    given = {"page": json.dumps(_plain(whole))}
+    template, folder = str(FOLDER / "page.typ"), str(FOLDER)
+    return bytes(typst.compile(template, root=folder, font_paths=[str(FONTS)], sys_inputs=given))
 
 
 def _part(part: SectionPart) -> dict[str, Any]:
