@@ -207,11 +207,6 @@ def meant(word: str) -> list[str]:
     return [name for name in (word, word.upper()) if name in _SYNONYMS] + _MEANT.get(written, [])
 
 
-def words() -> list[str]:
-    """Return all words that stand for a name."""
-    return [*_NOTES, *_MEANT]
-
-
 def _plain(word: str) -> str:
     """A word in lower case, with underscores for all signs between its parts."""
     return re.sub(r"[^a-z0-9]+", "_", word.lower()).strip("_")
