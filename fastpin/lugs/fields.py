@@ -1,14 +1,8 @@
 """The stress anywhere in a plate of any outline, from what the integral equations of its compliance solve.
 
-With Kolosov's potentials, S = conj(z) Phi' + Psi, the unit tangent tau of an edge with the plate to its left, and the
-traction t on the plate, every edge has (k + 1) Phi tau = d(2G u)/ds + i t. Cauchy's integrals give both inside, (T59):
-
-    2 pi i Phi(z) = int Phi dt/(t - z)
-    2 pi i S(z) = int (-conj(Phi tau) - i conj(t)) ds/(t - z) - int Phi conj(t - z)/(t - z)^2 dt
-
 The smooth field is the field beyond that of the hole in the infinite plate. It leaves the hole free, and its negative
-powers of z follow from the displacement of the hole's edge, (T48). So the integrals run over the other edges. Lengths
-are in hole radii.
+powers of z follow from the displacement of the hole's edge, (T48). So the integrals of :mod:`fastpin.lugs.cauchy` run
+over the other edges. Lengths are in hole radii.
 """
 
 from __future__ import annotations
@@ -21,8 +15,9 @@ import numpy as np
 
 from fastpin.bodies.compliance import Compliance, complex_coefficients
 from fastpin.errors import InputError
+from fastpin.lugs.cauchy import EdgeField, traction_on
 from fastpin.lugs.outline import Lug, distances
-from fastpin.lugs.panels import Fineness, near_integrals
+from fastpin.lugs.panels import Fineness
 from fastpin.lugs.plates import boundaries, hole_compliance, respond
 
 SAME = 1e-3
@@ -43,9 +38,6 @@ LEAST_PANEL = 0.004
 
 MOST_POINTS = 5_000
 """Points whose stresses are kept for other states, at most."""
-
-BLOCK = 50
-"""Points whose integrals are taken at once."""
 
 
 class PlateField:
@@ -83,27 +75,17 @@ class PlateField:
         self.edges = edges = response.edges
         size, (moved, pulled) = 2 + 4 * order, response.whole()
         self.matrix = response.projected()[:, :size]
-        by_panel = moved.reshape(edges.part.size, edges.points, -1)
-        slope = (edges.derivative @ by_panel / edges.half[:, None, None]).reshape(moved.shape)
-        along = 1j * edges.normals[:, None]
-        whole = (slope + 1j * pulled) / ((self.kolosov + 1.0) * along)
         loops = boundaries(lug, order)[1:]
-        corners = [(loop.parts[k].start, loop.is_singular(k)) for loop in loops for k in range(len(loop.parts))]
-        self._corners = np.array([place for place, _ in corners])
-        self.singular = self._corners[[singular for _, singular in corners]]
-        # At corners the displacement jumps a little from panel to panel. Its slope lacks these jumps.
-        before, after = (np.abs(self._corners[:, None] - ends).argmin(axis=1) for ends in edges.ends[::-1])
-        ends = edges.lagrange(np.array([-1.0, 1.0])) @ by_panel
-        self._cut = 2.0 * np.maximum(edges.half[before], edges.half[after])
+        singular = [loop.parts[k].start for loop in loops for k in range(len(loop.parts)) if loop.is_singular(k)]
+        self.singular = np.array(singular, dtype=complex)
         self.nearest = lug.nearest
         self._edges = [part.scaled(1.0 / lug.hole_radius) for part in lug.edges]
         self._outer = edges.part_of_node >= len(lug.contact_edge)
+        field = EdgeField.of(edges, self.kolosov, moved, pulled).on(edges.part >= len(lug.contact_edge))
         potential, spread = _beside_hole(order, self.kolosov, edges.z[self._outer])
-        smooth, pulled = whole[self._outer], pulled[self._outer]
-        smooth[:, :size] -= potential
-        pulled[:, :size] -= _traction(potential, spread, along[self._outer])
-        other = -np.conj(smooth * along[self._outer]) - 1j * np.conj(pulled)
-        self._densities = smooth, other, (ends[after, 0] - ends[before, 1]) / (self.kolosov + 1.0)
+        field.potential[:, :size] -= potential
+        field.traction[:, :size] -= traction_on(potential, spread, field.along[:, None])
+        self._field = field
 
     def contains(self, z: np.ndarray) -> np.ndarray:
         """Whether points (m,) lie within the outline, but in no further hole; edges belong to the plate."""
@@ -123,20 +105,18 @@ class PlateField:
     def smooth(self, column: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The part of the smooth field that the integrals give: s_rr + s_tt and s_rr - i s_rt at points z (m,)."""
         if z.size > MOST_POINTS:
-            found = self._stresses(z, tuple(each @ column[:, None] for each in self._densities))
+            found = self._stresses(z, self._field.times(column[:, None]))
             return found[0][:, 0], found[1][:, 0]
         mean, radial = self._of_each(z.astype(complex).tobytes())
         return mean @ column, radial @ column
 
     @lru_cache(maxsize=8)  # noqa: B019  the states of a history ask for the same points
     def _of_each(self, places: bytes) -> tuple[np.ndarray, np.ndarray]:
-        return self._stresses(np.frombuffer(places, dtype=complex), self._densities)
+        return self._stresses(np.frombuffer(places, dtype=complex), self._field)
 
-    def _stresses(self, z: np.ndarray, densities: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:
-        """s_rr + s_tt and s_rr - i s_rt at points z (m,), both (m, columns), of densities in columns."""
-        moved = self._moved(z)
-        parts = [self._integrals(moved[k : k + BLOCK], densities) for k in range(0, z.size, BLOCK)]
-        potential, spread = (np.concatenate(values) for values in zip(*parts, strict=True))
+    def _stresses(self, z: np.ndarray, field: EdgeField) -> tuple[np.ndarray, np.ndarray]:
+        """s_rr + s_tt and s_rr - i s_rt of several fields at points z (m,), both (m, fields)."""
+        potential, spread = field.inside(self._moved(z))
         return 4.0 * potential.real, 2.0 * potential.real - (z / np.conj(z))[:, None] * spread
 
     def _moved(self, z: np.ndarray) -> np.ndarray:
@@ -147,32 +127,6 @@ class PlateField:
             foot, along = part.nearest(z[near])
             found[near] = foot + CLOSEST * 1j * along
         return found
-
-    def _integrals(self, z: np.ndarray, densities: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:
-        """Phi and S at points (m,) by the integrals over all edges but the hole, both (m, columns)."""
-        smooth, other, jumps = densities
-        first, second, third = self._kernels(z)
-        away = self._corners - z[:, None]
-        jump = np.where(np.abs(away) > self._cut, 1.0 / (2j * math.pi * away), 0.0)
-        potential = first @ smooth + jump @ jumps
-        spread = second @ other - third @ smooth
-        spread -= jump @ np.conj(jumps) + (jump * np.conj(away) / away) @ jumps
-        return potential, spread
-
-    def _kernels(self, z: np.ndarray) -> np.ndarray:
-        """Cauchy's three kernels between points (m,) and the nodes of other edges, over 2 pi i, shape (3, m, nodes)."""
-        edges, first = self.edges, int(np.argmax(self._outer))  # the nodes of the hole come first
-
-        def kernels(r: np.ndarray, along: np.ndarray) -> np.ndarray:
-            inverse = 1.0 / r
-            return np.array([along * inverse, inverse, along * np.conj(r) * inverse * inverse])
-
-        with np.errstate(divide="ignore", invalid="ignore"):  # a node itself comes below
-            values = kernels(edges.z[first:] - z[:, None], 1j * edges.normals[first:]) * edges.weights[first:]
-        rows, columns, sums = near_integrals(edges, np.arange(edges.panel[first], edges.part.size), z, kernels)
-        for value, near in zip(values, sums.transpose(1, 0, 2), strict=True):
-            value[rows, columns - first] = near
-        return values / (2j * math.pi)
 
 
 def _beside_hole(order: int, kolosov: float, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -185,11 +139,6 @@ def _beside_hole(order: int, kolosov: float, z: np.ndarray) -> tuple[np.ndarray,
     back = powers @ np.conj(f[order:]) + np.outer(z, -kolosov * np.conj(a[0]))
     square = z[:, None] ** 2
     return potential, ((np.abs(square) - 1.0) * slope + back + potential) / square
-
-
-def _traction(potential: np.ndarray, spread: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """The traction on an edge with the unit tangents `along`, the plate to the left."""
-    return np.asarray(-1j * along * (2.0 * potential.real + np.conj(spread * along**2)))
 
 
 @lru_cache(maxsize=4)
@@ -209,6 +158,7 @@ def plate_field(body: Compliance) -> PlateField:
     return found
 
 
+@lru_cache(maxsize=8)
 def lug_of(body: Compliance) -> Lug:
     """Return the plate of a compliance that knows its outline. A wrong one raises :class:`InputError`."""
     return Lug.from_document(json.loads(body.outline), body.nu, body.plane, body.hole_radius)

@@ -77,14 +77,13 @@ class Response:
     edges : Edges
     u : ndarray, shape (2, nodes, 2 + 4 K + loads)
         Components along x and y.
-    t : ndarray, shape (2, nodes, 2 + 4 K + loads)
-        The given tractions, along x and y.
-    reactions : ndarray, shape (2, nodes, 2 + 4 K + loads + 1)
-        Tractions on held edges, along x and y; the last column belongs to `warm`.
+    t, pulled : ndarray, shape (2, nodes, 2 + 4 K + loads)
+        The given tractions, and those with the tractions of supports, along x and y.
     loads : tuple of str
         Names of the loads.
-    warm : ndarray, shape (2, nodes)
-        Displacements when all supports move by -z, as they do over a plate that expands by a unit of strain.
+    warm, hindered : ndarray, shape (2, nodes, 1)
+        Displacements and tractions when all supports move by -z, as they do over a plate that expands by a unit of
+        strain.
     resultants : ndarray, shape (3, 2 + 4 K + loads), or None
         Force along x and y, and moment about 0, of the given tractions on a plate that floats. The outline balances
         them by tractions that grow linearly.
@@ -93,9 +92,10 @@ class Response:
     edges: Edges
     u: np.ndarray
     t: np.ndarray
-    reactions: np.ndarray
+    pulled: np.ndarray
     loads: tuple[str, ...]
     warm: np.ndarray
+    hindered: np.ndarray
     resultants: np.ndarray | None = None
 
     def whole(self) -> tuple[np.ndarray, np.ndarray]:
@@ -107,8 +107,7 @@ class Response:
         places = {name: size + k for k, name in enumerate((*self.loads, WARM))}
         chosen = [*range(size), *(places.get(name, -1) for name in (*COLUMNS, WARM))]
         none = np.zeros((2, self.edges.z.size, 1))
-        u, t = np.dstack([self.u, self.warm[..., None], none]), np.dstack([self.t, none, none])
-        t[:, :, :-1] += self.reactions
+        u, t = np.dstack([self.u, self.warm, none]), np.dstack([self.pulled, self.hindered, none])
         return u[0][:, chosen] + 1j * u[1][:, chosen], t[0][:, chosen] + 1j * t[1][:, chosen]
 
     def projected(self) -> np.ndarray:
@@ -117,7 +116,7 @@ class Response:
 
     def with_temperature(self) -> np.ndarray:
         """The same with a last column for the temperature."""
-        return np.hstack([self.projected(), self._coefficients(self.warm[..., None])])
+        return np.hstack([self.projected(), self._coefficients(self.warm)])
 
     def _coefficients(self, u: np.ndarray) -> np.ndarray:
         size = self.t.shape[2] - len(self.loads)
@@ -233,6 +232,67 @@ def hole_compliance(order: int, kolosov: float) -> np.ndarray:
     return matrix
 
 
+class Equations:
+    """The integral equations of a plate, factored once.
+
+    Parameters
+    ----------
+    lug : Lug
+    edges : Edges
+    progress : callable
+        Called with the part that is done.
+    modes : RigidModes, optional
+        Of a plate that floats.
+    """
+
+    def __init__(
+        self, lug: Lug, edges: Edges, progress: Callable[[float], None], modes: RigidModes | None = None
+    ) -> None:
+        self.edges = edges
+        held, frame = self._held, self._frame = _supports(lug, edges)
+        # At 1 (nu = 0.5 in plane strain) the pressure on an outline that is held all round moves nothing, and the
+        # equations have no unique solution. The matrix changes by 1e-7.
+        self.kolosov = kolosov = max(lug.kolosov, 1.0 + 1e-7)
+        with threadpool_limits(limits=1, user_api="blas"):  # the same bits with any number of cores
+            # With this unit of length no plate has the size at which a purely logarithmic equation for held edges has
+            # no unique solution.
+            both = matrices(edges, kolosov, 8.0 * edges.extent, progress)
+            for matrix in both:  # both components of u and t at a node along the support's frame
+                x, y = matrix[:, :, 0], matrix[:, :, 1]
+                turned = -x * frame.imag + y * frame.real
+                x *= frame.real
+                x += y * frame.imag
+                matrix[:, :, 1] = turned
+            size = 2 * edges.z.size
+            self._of_tractions, T = both.reshape(2, size, size)
+            if modes is not None:  # the mean of the outline moves no more
+                T += modes.of_nodes @ np.linalg.solve(modes.gram, modes.on_outline.T)
+            self._of_supports = T[:, held.reshape(-1)]
+            T[:, held.reshape(-1)] = -self._of_tractions[:, held.reshape(-1)]
+            self._factors = scipy.linalg.lu_factor(T.T, overwrite_a=True, check_finite=False)
+
+    def solve(self, tractions: np.ndarray, moved: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements 2G u/R and tractions of all nodes, along x and y, both (2, nodes, m).
+
+        Free components have the given `tractions`, held ones are `moved` by 0 unless it is given; both are complex,
+        (nodes, m).
+        """
+        held, frame = self._held, self._frame
+        along = np.stack([_dot(frame, tractions), _dot(1j * frame, tractions)])
+        along[held] = 0.0
+        with threadpool_limits(limits=1, user_api="blas"):
+            right = self._of_tractions @ along.reshape(-1, tractions.shape[1])
+            if moved is not None:
+                back = np.stack([_dot(frame, moved), _dot(1j * frame, moved)])
+                right -= self._of_supports @ back[held]
+            found = scipy.linalg.lu_solve(self._factors, right, trans=1, check_finite=False).reshape(along.shape)
+        along[held] = found[held]
+        found[held] = 0.0 if moved is None else back[held]
+        c, s = frame.real[:, None], frame.imag[:, None]
+        u, t = (np.stack([c * one - s * two, s * one + c * two]) for one, two in (found, along))
+        return u, t
+
+
 def respond(
     lug: Lug, order: int, fineness: Fineness, progress: Callable[[float], None], pinned: Collection[str] = ()
 ) -> Response:
@@ -241,48 +301,18 @@ def respond(
     `pinned` names further holes with a pin. Their radius is that of the first hole.
     """
     edges = Edges(boundaries(lug, order, pinned), fineness)
-    held, frame = _supports(lug, edges)
-    # At 1 (nu = 0.5 in plane strain) the pressure on an outline that is held all round moves nothing, and the equations
-    # have no unique solution. The matrix changes by 1e-7.
-    kolosov = max(lug.kolosov, 1.0 + 1e-7)
     tractions, loads = _tractions(lug, edges, order, pinned)
     modes = resultants = None
     if lug.floats:
         modes = _rigid_modes(lug, edges)
         tractions, resultants = _balanced(tractions, modes)
-    with threadpool_limits(limits=1, user_api="blas"):  # the same bits with any number of cores
-        # With this unit of length no plate has the size at which a purely logarithmic equation for held edges has no
-        # unique solution.
-        both = matrices(edges, kolosov, 8.0 * edges.extent, lambda done: progress(0.7 * done))
-        for matrix in both:  # both components of u and t at a node along the support's frame
-            x, y = matrix[:, :, 0], matrix[:, :, 1]
-            turned = -x * frame.imag + y * frame.real
-            x *= frame.real
-            x += y * frame.imag
-            matrix[:, :, 1] = turned
-        size = 2 * edges.z.size
-        U, T = both.reshape(2, size, size)
-        if modes is not None:  # the mean of the outline moves no more
-            T += modes.of_nodes @ np.linalg.solve(modes.gram, modes.on_outline.T)
-        along = np.stack([_dot(frame, tractions), _dot(1j * frame, tractions)])
-        along[held] = 0.0
-        right = U @ along.reshape(size, -1)
-        back = -2.0 * np.stack([_dot(frame, edges.z[:, None]), _dot(1j * frame, edges.z[:, None])])
-        back[~held] = 0.0  # 2G u is 2 by a unit of G times the strain
-        moved = -T @ back.reshape(size, 1)
-        T[:, held.reshape(-1)] = -U[:, held.reshape(-1)]
-        factors = scipy.linalg.lu_factor(T.T, overwrite_a=True, check_finite=False)
-        found = scipy.linalg.lu_solve(factors, right, trans=1, check_finite=False).reshape(along.shape)
-        warm = scipy.linalg.lu_solve(factors, moved, trans=1, check_finite=False).reshape(back.shape)
+    equations = Equations(lug, edges, lambda done: progress(0.7 * done), modes)
+    u, pulled = equations.solve(tractions)
+    # 2G u is 2 by a unit of G times the strain
+    warm, hindered = equations.solve(np.zeros((edges.z.size, 1)), -2.0 * edges.z[:, None])
     progress(1.0)
-    of_supports = np.where(held[..., None], np.concatenate([found, warm], axis=2), 0.0)
-    found[held], warm[held] = 0.0, back[held]
-    c, s = frame.real[:, None], frame.imag[:, None]
-    u, by_supports, reactions = (
-        np.stack([c * one - s * two, s * one + c * two]) for one, two in (found, warm, of_supports)
-    )
     given = np.stack([tractions.real, tractions.imag])
-    return Response(edges, u, given, reactions, loads, by_supports[..., 0], resultants)
+    return Response(edges, u, given, pulled, loads, warm, hindered, resultants)
 
 
 class RigidModes(NamedTuple):
