@@ -352,6 +352,11 @@ class PlateBody(BodyBase):
         return ""
 
     @property
+    def other_edges(self) -> Any:
+        """The edges beyond the hole as cracks see them, :class:`fastpin.lugs.OtherEdges`; None of other plates."""
+        return None
+
+    @property
     def lug(self) -> PlateBody:
         """The body round a bush; the plate itself without one."""
         return self

@@ -49,7 +49,7 @@ from fastpin.model.loads import LOADS, REMOTE, TEMPERATURE, P, Q
 from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
 
 if TYPE_CHECKING:  # few plates need it
-    from fastpin.lugs import PlateField
+    from fastpin.lugs import OtherEdges, PlateField
 
 FORMAT = "fastpin compliance"
 """Name of the file format, its first entry."""
@@ -421,6 +421,12 @@ class Compliance(PlateBody):
         named = ", ".join(f"[{length(z.real)}, {length(z.imag)}]" for z in places[:MOST_NAMED].tolist())
         more = f" and {len(places) - MOST_NAMED} more" if len(places) > MOST_NAMED else ""
         return f"apart from {length(apart)} about sharp corners and ends of supports: {named}{more}" if named else ""
+
+    @property
+    def other_edges(self) -> OtherEdges | None:
+        from fastpin import lugs
+
+        return lugs.OtherEdges(self) if self.outline else None
 
     @property
     def _inside(self) -> PlateField:

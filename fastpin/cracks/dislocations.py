@@ -1,21 +1,23 @@
 """Stress intensities of straight cracks at the edge of a free hole, from the tractions that load their lines.
 
 Lengths are in units of the hole's radius R, and stress intensities in the unit of the tractions times sqrt(R). A crack
-is a row of dislocations. Each one leaves the edge of the hole free, and in a ring also the outer rim. The densities
-follow from the singular integral equation of the tractions by Gauss's rule in v, with s = a (1 - y^2) and
+is a row of dislocations. Each one leaves the edge of the hole free, and with its image also the edges beyond. The
+densities follow from the singular integral equation of the tractions by Gauss's rule in v, with s = a (1 - y^2) and
 y = (15 v - 10 v^3 + 3 v^5)/8. This map crowds the points at the mouth, where the density is not smooth. The equation
 holds at the zeros of the Legendre function Q_n, where the rule is exact for the pole.
 
-The intensities are sums of the tractions at these points with weights. The weights know neither the load nor the place
-of the mouth, and are kept. Muskhelishvili (1953) has the potentials; docs/cracks.md has the accuracy.
+The intensities are sums of the tractions at these points with weights. The weights do not know the load, nor in an
+infinite plate and in a ring the place of the mouth. They are kept. Muskhelishvili (1953) has the potentials;
+docs/cracks.md has the accuracy.
 """
 
 from __future__ import annotations
 
 import cmath
 import math
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -25,6 +27,9 @@ FEW, MANY, MOST = 40, 80, 160
 With many an inclined one has 7e-7 at 30 deg and 6e-5 at 60 deg, and one through 0.9 of a ring 4e-7. With most two
 cracks have 1e-4 of the K of a lone one if they are as near as 0.2 of the shorter one.
 """
+
+CLOSE = 0.9
+"""Part of the ligament from which a crack needs most points: with many it has 2e-7 there, and 1e-5 at 0.95."""
 
 OBLIQUE = math.radians(10.0)
 """Inclination from which a crack needs many points: its density is less smooth at the mouth."""
@@ -43,6 +48,56 @@ class CrackLine(NamedTuple):
     mouth: float
     angle: float
     length: float
+
+
+class Beyond(Protocol):
+    """The edges beyond the hole.
+
+    `is_round` says whether all places of the mouth are alike. :meth:`deepest` is the largest part of its ligament that
+    a crack takes; 0 in an infinite plate. :meth:`influence` gives the coefficients of g and of conj(g) in the tractions
+    of images at distances `s` from the mouths, of dislocations at distances `t`, both (cracks, p). The coefficients
+    have the shape (cracks p, cracks p).
+    """
+
+    @property
+    def is_round(self) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
+    def deepest(self, lines: tuple[CrackLine, ...]) -> float: ...
+
+    def influence(
+        self, lines: tuple[CrackLine, ...], s: np.ndarray, t: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]: ...
+
+
+@dataclass(frozen=True)
+class FreeRim:
+    """The free outer rim of a ring of the radius `far`; infinite for an infinite plate.
+
+    A tip closer to the rim needs more harmonics.
+    """
+
+    far: float
+
+    is_round: ClassVar[bool] = True
+
+    def deepest(self, lines: tuple[CrackLine, ...]) -> float:
+        """See :class:`Beyond`."""
+        depths = [abs(1.0 + line.length * cmath.exp(1j * line.angle)) - 1.0 for line in lines]
+        return max(depths) / (self.far - 1.0)
+
+    def influence(self, lines: tuple[CrackLine, ...], s: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See :class:`Beyond`."""
+        if math.isinf(self.far):
+            return np.zeros((s.size, t.size)), np.zeros((s.size, t.size))
+        starts, along = (np.repeat(each, s.shape[1]) for each in _starts(lines))
+        return _rim_influence((starts + s.ravel() * along, along), (starts + t.ravel() * along, along), self.far)
+
+
+def _starts(lines: tuple[CrackLine, ...]) -> tuple[list[complex], list[complex]]:
+    """Mouths and directions of cracks."""
+    return [cmath.exp(1j * line.mouth) for line in lines], [cmath.exp(1j * (line.mouth + line.angle)) for line in lines]
 
 
 class Rule(NamedTuple):
@@ -101,11 +156,12 @@ def _zeros_of_second_kind(n: int, v: np.ndarray) -> np.ndarray:
     return 0.5 * (low + high)
 
 
-def needed_points(lines: tuple[CrackLine, ...], far: float) -> int:
-    """Return the number n of points for these cracks in a plate with the free rim `far`."""
-    if len(lines) > 1:
+def needed_points(lines: tuple[CrackLine, ...], beyond: Beyond) -> int:
+    """Return the number n of points for these cracks in a plate with edges beyond the hole."""
+    deepest = beyond.deepest(lines)
+    if len(lines) > 1 or deepest > CLOSE * (1.0 + 1e-9):
         return MOST
-    return MANY if math.isfinite(far) or any(abs(line.angle) > OBLIQUE for line in lines) else FEW
+    return MANY if deepest > 0.0 or any(abs(line.angle) > OBLIQUE for line in lines) else FEW
 
 
 def places(line: CrackLine, n: int) -> tuple[np.ndarray, np.ndarray]:
@@ -116,7 +172,7 @@ def places(line: CrackLine, n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=4096)
-def weights(lines: tuple[CrackLine, ...], far: float, n: int) -> np.ndarray:
+def weights(lines: tuple[CrackLine, ...], beyond: Beyond, n: int) -> np.ndarray:
     """Weights of the tractions on the lines of cracks, shape (cracks, 2, cracks, n/2, 2).
 
     The stress intensities (K_I, K_II) of each crack are the sums of the weights times (s_nn, s_tn) at the points of
@@ -125,16 +181,14 @@ def weights(lines: tuple[CrackLine, ...], far: float, n: int) -> np.ndarray:
     Parameters
     ----------
     lines : tuple of CrackLine
-        Only the differences of their mouths count. They do not touch one another.
-    far : float
-        Radius of the free outer rim; infinite for an infinite plate. A tip closer to the rim needs more harmonics.
+        They do not touch one another. Where all places are alike, only the differences of their mouths count.
+    beyond : Beyond
     n : int
         Number of points, even; see :func:`needed_points`.
     """
     along, size = rule(n), n // 2 * len(lines)
-    directions = np.repeat([cmath.exp(1j * (line.mouth + line.angle)) for line in lines], n // 2)
+    starts, directions = (np.repeat(each, n // 2) for each in _starts(lines))
     lengths = np.repeat([line.length for line in lines], n // 2)
-    starts = np.repeat([cmath.exp(1j * line.mouth) for line in lines], n // 2)
     turns = np.repeat([cmath.exp(1j * line.angle) for line in lines], n // 2)
     s, t = (lengths * np.tile(one, len(lines)) for one in (along.place, along.source))
     z, z0 = starts + s * directions, starts + t * directions
@@ -145,9 +199,8 @@ def weights(lines: tuple[CrackLine, ...], far: float, n: int) -> np.ndarray:
     pole = np.divide(1.0, s[:, None] - t[None, :], out=np.zeros((size, size)), where=own)
     straight = pole + 0.5 * of_conjugate * directions.conj()
     mirrored = 0.5 * of_gamma * directions
-    if math.isfinite(far):
-        by_rim = _rim_influence((z, directions), (z0, directions), far)
-        straight, mirrored = straight + by_rim[0], mirrored + by_rim[1]
+    by_images = beyond.influence(lines, s.reshape(len(lines), -1), t.reshape(len(lines), -1))
+    straight, mirrored = straight + by_images[0], mirrored + by_images[1]
     scale = lengths * np.tile(along.weight, len(lines))
     straight, mirrored = straight * scale, mirrored * scale
     one, other = straight + mirrored, straight - mirrored

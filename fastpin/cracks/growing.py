@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from fastpin.cracks.reversals import closed_cycles
 from fastpin.errors import InputError, InputWarning
 from fastpin.model import angles, ties
 from fastpin.model.checks import check_callable, instance, numbers, positive, true_or_false
-from fastpin.model.crack import CrackGrowth, edge_of, law_of
+from fastpin.model.crack import MOST_OF_LIGAMENT, CrackGrowth, check_length, edge_of, law_of
 from fastpin.model.doubts import warn_of
 from fastpin.model.growth import GrowthLaw, checked_law
 from fastpin.model.problem import Problem
@@ -36,8 +36,11 @@ MOST_REFINED = 500
 GrowthProgress = Callable[[float, float], None]
 """Called with the number of places that are done, and of all places."""
 
-MOST_DECADES = 8.0
-"""Most decades from the first to the last length."""
+LEAST_DECADES, MOST_DECADES = 1e-6, 8.0
+"""Least and most decades from the first to the last length."""
+
+BESIDE = (-4.0, -3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0)
+"""Places beside the fastest of every fifth degree that are looked at, deg."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -64,6 +67,9 @@ class Growth(ReadOnly):
     error : float
         Estimated relative error of the life by the lengths at which K was computed; of the arrest if the crack stops.
         NaN if it is not known. The error of K itself comes on top.
+    ligament : float
+        Length of the line of the crack to the edge at which it leaves a plate of any outline, m; infinite in others.
+        The growth ends at 0.95 of it.
     """
 
     problem: Problem
@@ -77,6 +83,7 @@ class Growth(ReadOnly):
     loads: Mapping[float, Mapping[str, float]]
     doubts: tuple[InputWarning, ...] = ()
     error: float = math.nan
+    ligament: float = math.inf
 
     per: ClassVar[str] = "cycle"
     """What is repeated: a cycle, or a spectrum."""
@@ -130,13 +137,18 @@ class Growth(ReadOnly):
 
     @property
     def fracture(self) -> float:
-        """The first length at which the largest K_I reaches the toughness, m; NaN without one, or after an arrest."""
+        """The length at which the largest K_I reaches the toughness, or 0.95 of the ligament is cracked, m.
+
+        NaN without one, or after an arrest.
+        """
         return self._fracture if math.isnan(self.arrest) else math.nan
 
     @property
     def _fracture(self) -> float:
         toughness = self.law.fracture_toughness
-        return self._first(self.K_max - toughness) if math.isfinite(toughness) else math.nan
+        found = self._first(self.K_max - toughness) if math.isfinite(toughness) else math.nan
+        through = self.length[-1] >= MOST_OF_LIGAMENT * self.ligament * (1.0 - 1e-9)
+        return float(self.length[-1]) if math.isnan(found) and through else found
 
     def _first(self, excess: np.ndarray) -> float:
         """The first length with an excess of at least 0, read between the lengths; NaN without one."""
@@ -169,7 +181,8 @@ class Growth(ReadOnly):
         if fate == CrackFate.STOPS:
             return f"grows from {first} and stops at {length.text(self.arrest, 4)}"
         if fate == CrackFate.BREAKS:
-            return f"grows from {first} to fracture at {length.text(self.fracture, 4)} {passes}"
+            at = "" if math.isinf(self.ligament) else f", of a ligament of {length.text(self.ligament, 4)},"
+            return f"grows from {first} to fracture at {length.text(self.fracture, 4)}{at} {passes}"
         return f"grows from {first} to {last} {passes}"
 
 
@@ -232,18 +245,18 @@ def growth(
     law : GrowthLaw
         :class:`Walker`, :func:`paris` or :class:`Nasgro`, with constants of the user.
     first, last : float
-        The first and the last length, m.
+        The first and the last length, m. In a plate of any outline the growth ends at 0.95 of the ligament.
     residual_stress : callable, optional
         Normal stress on the line of the crack that is added at every stop, Pa, from the distances to the mouth, m.
 
     Raises
     ------
     InputError
-        If the states are no cycle of one problem, `last` is not longer than `first`, the crack is longer than the body,
-        the body is rigid, or a compliance describes the plate.
+        If the states are no cycle of one problem, `last` is not longer than `first`, the crack leaves the body, the
+        body is rigid, or a compliance without its outline describes the plate.
     """
     instance("crack", crack, Crack, "a Crack")
-    return _Following.of(states, law, crack, (first, last), residual_stress).grown(crack)
+    return _Following.of(states, law, crack.body, (first, last), residual_stress).checked(crack).grown(crack)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -291,7 +304,8 @@ def growth_along_edge(
     states, law, first, last
         See :func:`growth`.
     theta : array_like, optional
-        Angles of the mouths, rad; each degree all round unless given.
+        Angles of the mouths, rad; each degree all round unless given. In a plate of any outline each place takes a
+        second: there it is every fifth degree, and each degree beside the fastest one.
     angle : float
         Direction of the cracks from the radius, rad.
     body : {"plate", "seat"}
@@ -305,7 +319,7 @@ def growth_along_edge(
     """
     crack = Crack(0.0, angle, body)
     check_callable("progress", progress, 2)
-    return _Following.of(states, law, crack, (first, last), None).along(crack, theta, progress)
+    return _Following.of(states, law, crack.body, (first, last), None).along(crack, theta, progress)
 
 
 def spectrum_growth(
@@ -339,9 +353,9 @@ def spectrum_growth(
     """
     instance("crack", crack, Crack, "a Crack")
     follow = _Following.of(
-        states, law, crack, (first, last), residual_stress, True, true_or_false("straight", straight)
+        states, law, crack.body, (first, last), residual_stress, True, true_or_false("straight", straight)
     )
-    found = follow.grown(crack)
+    found = follow.checked(crack).grown(crack)
     assert isinstance(found, SpectrumGrowth)
     return found
 
@@ -374,8 +388,8 @@ def planned_growth(
     residual = None if how.residual_stress is None else how.residual
     crack = Crack(0.0 if how.theta is None else how.theta, how.angle, edge_of(how.body))
     straight = counted and len(stops) > MOST_REFINED
-    follow = _Following.of(stops, law, crack, (how.first, how.last), residual, counted, straight)
-    return follow.grown(crack) if how.theta is not None else follow.along(crack, None, progress).fastest
+    follow = _Following.of(stops, law, crack.body, (how.first, how.last), residual, counted, straight)
+    return follow.checked(crack).grown(crack) if how.theta is not None else follow.along(crack, None, progress).fastest
 
 
 class _Following(NamedTuple):
@@ -384,7 +398,7 @@ class _Following(NamedTuple):
     stops: Sequence[State]
     edge: CrackedEdge
     law: GrowthLaw
-    lengths: np.ndarray
+    ends: tuple[float, float]
     residual: Residual | None
     counted: bool
     straight: bool
@@ -394,7 +408,7 @@ class _Following(NamedTuple):
         cls,
         states: Sequence[State],
         law: GrowthLaw,
-        crack: Crack,
+        body: CrackedBody,
         ends: tuple[float, float],
         residual: Residual | None,
         counted: bool = False,
@@ -402,53 +416,90 @@ class _Following(NamedTuple):
     ) -> _Following:
         """Check the arguments of :func:`growth`."""
         stops = stops_of_one_problem(states)
-        edge = CrackedEdge.of(stops[0].problem, crack.body)
-        return cls(stops, edge, checked_law(law), _lengths(edge, crack, *ends), residual, counted, straight)
+        edge = CrackedEdge.of(stops[0].problem, body)
+        start, end = positive("first", ends[0]), positive("last", ends[1])
+        decades = math.log10(end) - math.log10(start)
+        if not LEAST_DECADES < decades <= MOST_DECADES:
+            most = f"and at most 1e{MOST_DECADES:g} times as long"
+            raise InputError("last", f"must be longer than the first length of {start:g} m {most}, not {end:g}")
+        return cls(stops, edge, checked_law(law), (start, end), residual, counted, straight)
+
+    def lengths(self, crack: Crack) -> np.ndarray:
+        """The lengths at which K is computed, m. They end where the ligament does."""
+        problem, (start, end) = self.edge.problem, self.ends
+        check_length("last", problem, crack.body, crack.angle, end)
+        longest = MOST_OF_LIGAMENT * self.edge.ligament(crack)
+        decades = math.log10(min(end, longest)) - math.log10(start)
+        if decades <= LEAST_DECADES:
+            where = f"within {MOST_OF_LIGAMENT:g} of the ligament at {angles.from_bottom(crack.theta):.2f} deg"
+            length = units(problem)["length"]
+            raise InputError("first", f"must lie {where}, {length.text(longest)}, not be {length.text(start)}")
+        return np.geomspace(start, min(end, longest), max(math.ceil(COMPUTED * decades) + 1, 4))
 
     def intensities(self, crack: Crack, turns: np.ndarray, lengths: np.ndarray) -> np.ndarray:
         """K at lengths, m, shape (states, turns, lengths, 2)."""
         rows = [self.edge.lines([crack], length) for length in lengths]
         return histories(self.stops, self.edge, rows, turns, self.residual, self.straight)[:, :, :, 0]
 
-    def grown(self, crack: Crack, K: np.ndarray | None = None) -> Growth:
-        """The growth of one crack. `K` is known at the first lengths already, if it is given."""
+    def checked(self, crack: Crack) -> _Following:
+        """Raise :class:`InputError` if a crack whose place is given leaves the body."""
+        check_length("last", self.edge.problem, crack.body, crack.angle, self.ends[1], crack.theta, 1.0)
+        return self
+
+    def grown(self, crack: Crack) -> Growth:
+        """The growth of one crack."""
 
         def compute(lengths: np.ndarray) -> np.ndarray:
             return self.intensities(crack, np.zeros(1), lengths)[:, 0]
 
-        known = compute(self.lengths) if K is None else K
-        lengths, K, error = refined(self.lengths, known, compute, lambda a, K: self.pace(a, K)[0])
-        found = self.doubts(crack, known)
+        first = self.lengths(crack)
+        known = compute(first)
+        lengths, K, error = refined(first, known, compute, lambda a, K: self.pace(a, K)[0])
+        found = self.doubts(crack, first, known)
         warn_of(found, 3)
         return self.read(crack, lengths, K, found, error)
 
     def along(self, crack: Crack, theta: ArrayLike | None, progress: GrowthProgress | None) -> EdgeGrowth:
-        """The growth of one crack at many places, by default at each degree."""
-        every = (
-            np.linspace(-1.5 * np.pi, 0.5 * np.pi, 360, endpoint=False) if theta is None else numbers("theta", theta)
-        )
-        every = np.array([angles.near_bottom(place) for place in every.ravel()])
+        """The growth of one crack at many places, by default at each degree.
+
+        In a plate of any outline each place has weights of its own. There every fifth degree comes first, then each
+        degree beside the fastest one.
+        """
+        is_round = self.edge.beyond.is_round
+        count = 360 if is_round else 72
+        every = np.linspace(-1.5 * np.pi, 0.5 * np.pi, count, endpoint=False)
+        every = every if theta is None else numbers("theta", theta).ravel()
         if not every.size:
             raise InputError("theta", "must be at least one angle")
+        beside = np.radians(BESIDE) if theta is None and not is_round else np.zeros(0)
         grown: list[Growth] = []
-        for part in np.array_split(every, max(1, every.size // 40)):  # 40 places need some 30,000 points in each state
-            K = self.intensities(crack, part, self.lengths)
-            for k, place in enumerate(part.tolist()):
-                grown.append(self.read(Crack(place, crack.angle, crack.body), self.lengths, K[:, k]))
-                if progress is not None:
-                    progress(len(grown), every.size)
-        life, arrest = np.array([one.life for one in grown]), np.array([one.arrest for one in grown])
-        farthest = np.flatnonzero(ties.is_top(np.where(np.isnan(arrest), np.inf, arrest)))
-        at = int(farthest[ties.top_angle(-life[farthest], every[farthest])])
+
+        def follow(places: np.ndarray) -> None:
+            places = np.array([angles.near_bottom(place) for place in places])
+            # Forty places need some 30,000 points in each state.
+            for part in np.array_split(places, max(1, places.size // 40 if is_round else places.size)):
+                start, turns = (crack, part) if is_round else (replace(crack, theta=part[0]), np.zeros(1))
+                lengths = self.lengths(start)
+                K = self.intensities(start, turns, lengths)
+                for k, place in enumerate(part.tolist()):
+                    grown.append(self.read(replace(crack, theta=place), lengths, K[:, k]))
+                    if progress is not None:
+                        progress(len(grown), every.size + beside.size)
+
+        follow(every)
+        if beside.size:
+            follow(grown[_fastest(grown)].crack.theta + beside)
+            grown.sort(key=lambda one: one.crack.theta)
+        at = _fastest(grown)
+        places, life, arrest = np.array([(one.crack.theta, one.life, one.arrest) for one in grown]).T
         fastest = self.grown(grown[at].crack)
         life[at], arrest[at] = fastest.life, fastest.arrest
-        return EdgeGrowth(every, life, arrest, fastest)
+        return EdgeGrowth(places, life, arrest, fastest)
 
-    def doubts(self, crack: Crack, K: np.ndarray) -> tuple[InputWarning, ...]:
-        """Doubts about a crack with these intensities, shape (states, lengths, 2)."""
-        longest = float(self.lengths[-1])
-        sliding = sliding_doubt("last", self.edge.problem, self.lengths, K)
-        return (*self.edge.doubts("last", crack, longest), *sliding)
+    def doubts(self, crack: Crack, lengths: np.ndarray, K: np.ndarray) -> tuple[InputWarning, ...]:
+        """Doubts about a crack with these intensities at lengths, shape (states, lengths, 2)."""
+        sliding = sliding_doubt("last", self.edge.problem, lengths, K)
+        return (*self.edge.doubts("last", crack, float(lengths[-1])), *sliding)
 
     def pace(self, lengths: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
         """The pace of :data:`fastpin.cracks.lengths.CrackPace` from K at lengths, and the sums of a spectrum."""
@@ -493,7 +544,7 @@ class _Following(NamedTuple):
         at = np.array([load_point(self.stops[place]) for place in top.tolist()])
         loads = {load_point(state): state.load for state in (self.stops[place] for place in np.unique(top).tolist())}
         known = (
-            self.edge.problem, crack, self.law, fine, *rows[3:6], at, loads, doubts, error
+            self.edge.problem, crack, self.law, fine, *rows[3:6], at, loads, doubts, error, self.edge.ligament(crack)
         )  # fmt: skip
         if not self.counted:
             return Growth(*known)
@@ -519,12 +570,8 @@ def _sums(law: GrowthLaw, lengths: np.ndarray, opening: np.ndarray) -> tuple[np.
     return growth, largest, needed, counts
 
 
-def _lengths(edge: CrackedEdge, crack: Crack, first: float, last: float) -> np.ndarray:
-    """Check the first and the last length, m, and return the lengths at which K is computed."""
-    start, end = positive("first", first), positive("last", last)
-    decades = math.log10(end) - math.log10(start)
-    if not 1e-6 < decades <= MOST_DECADES:
-        most = f"and at most 1e{MOST_DECADES:g} times as long"
-        raise InputError("last", f"must be longer than the first length of {start:g} m {most}, not {end:g}")
-    edge.check("last", crack, np.array([end]))
-    return np.geomspace(start, end, max(math.ceil(COMPUTED * decades) + 1, 4))
+def _fastest(grown: Sequence[Growth]) -> int:
+    """The place of the growth with the shortest life, or of the one that comes farthest."""
+    theta, life, arrest = np.array([(one.crack.theta, one.life, one.arrest) for one in grown]).T
+    farthest = np.flatnonzero(ties.is_top(np.where(np.isnan(arrest), np.inf, arrest)))
+    return int(farthest[ties.top_angle(-life[farthest], theta[farthest])])

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.bodies.harmonics import FREE
-from fastpin.cracks.dislocations import CrackLine, needed_points, places, rule, weights
+from fastpin.cracks.dislocations import Beyond, CrackLine, FreeRim, needed_points, places, rule, weights
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import FastpinError, InputError, InputWarning
 from fastpin.model import angles, loads
 from fastpin.model.checks import check_callable, choice, instances, number, numbers, true_or_false
-from fastpin.model.crack import MOST_INCLINATION, NO_INSIDE, check_length, depth_of, wall_of
+from fastpin.model.crack import MOST_INCLINATION, check_inside, check_length, depth_of, other_edges, wall_of
 from fastpin.model.doubts import warn_of
 from fastpin.model.points import EDGES, MOST_ANGLE, Points, isotropic_material, near_rim
 from fastpin.model.problem import Problem
@@ -135,7 +135,7 @@ def stress_intensity(
     Raises
     ------
     InputError
-        If a crack is longer than the body, two cracks touch, the body is rigid, or a compliance gives its plate no
+        If a crack leaves the body, two cracks touch, the body is rigid, or a compliance without its outline gives no
         stress inside.
     """
     each = [states] if isinstance(states, State) else states
@@ -156,7 +156,7 @@ def stress_intensity(
         edge.check("lengths", crack, table[:, k])
     rows = [edge.lines(group, row) for row in table]
     if len(group) > 1:
-        _check_apart(rows)
+        check_apart(rows)
     K = histories(stops, edge, rows, np.zeros(1), residual_stress, true_or_false("straight", straight))[:, 0]
     K_I, K_II = (K[..., 0, mode] if single else K[..., mode] for mode in (0, 1))
     found = []
@@ -195,15 +195,20 @@ class CrackedEdge(NamedTuple):
         isotropic_material("body", problem, body, "a stress intensity")
         near, bush, lug = near_rim(problem, body), problem.joint.bush, problem.plate_body.lug
         in_bush, wall = body == "plate" and bush is not None, wall_of(problem, body)
-        if not in_bush and lug.edge_only:
-            raise InputError("body", NO_INSIDE)
+        check_inside(problem, body)
         is_free = not in_bush and (math.isinf(wall) or lug.outer_kind == FREE)
         return cls(problem, body, near * problem.hole_radius, wall, is_free)
 
     @property
-    def far(self) -> float:
-        """Radius of the free outer rim in radii of the edge; infinite if there is none."""
-        return 1.0 + self.wall if self.is_free else math.inf
+    def beyond(self) -> Beyond:
+        """The edges beyond the hole that the kernel knows."""
+        edges: Beyond | None = other_edges(self.problem, self.body)
+        return FreeRim(1.0 + self.wall if self.is_free else math.inf) if edges is None else edges
+
+    def ligament(self, crack: Crack) -> float:
+        """Length of the line of a crack to the edge of a plate of any outline, m; infinite in other bodies."""
+        edges = other_edges(self.problem, self.body)
+        return math.inf if edges is None else self.radius * float(edges.ligament(crack.theta, crack.angle))
 
     def lines(self, cracks: Sequence[Crack], lengths: ArrayLike) -> tuple[CrackLine, ...]:
         """The lines of cracks of these lengths, m, for the kernel."""
@@ -216,7 +221,7 @@ class CrackedEdge(NamedTuple):
 
     def check(self, field: str, crack: Crack, lengths: np.ndarray) -> None:
         """Raise :class:`InputError` if a length, m, is too large for the body."""
-        check_length(field, self.problem, self.body, crack.angle, float(np.max(lengths)))
+        check_length(field, self.problem, self.body, crack.angle, float(np.max(lengths)), crack.theta)
 
     def doubts(self, field: str, crack: Crack, longest: float) -> list[InputWarning]:
         """Doubts about the kernel for a crack of this length, m."""
@@ -276,10 +281,13 @@ class CrackWeights(NamedTuple):
         residual_stress: Residual | None,
     ) -> CrackWeights:
         """The weights of the cracks of :func:`histories`."""
-        n = needed_points(rows[0], edge.far)
-        # With the first mouth at the angle 0 the weights are found again at other places.
-        at_zero = [tuple(line._replace(mouth=line.mouth - row[0].mouth) for line in row) for row in rows]
-        of_rows = np.array([weights(row, edge.far, n) for row in at_zero])
+        beyond = edge.beyond
+        n = max(needed_points(row, beyond) for row in rows)
+        if beyond.is_round:  # with the first mouth at the angle 0 the weights are found again at other places
+            alike = [tuple(line._replace(mouth=line.mouth - row[0].mouth) for line in row) for row in rows]
+        else:
+            alike = list(rows)
+        of_rows = np.array([weights(row, beyond, n) for row in alike])
         found = np.array([[places(line, n) for line in row] for row in rows])  # rows, cracks, (depth, angle), points
         depth, angle = found[:, :, 0], found[:, :, 1]
         mouths = np.array([[line.mouth for line in row] for row in rows])[..., None]
@@ -334,7 +342,7 @@ def histories(
     rows : sequence of tuple of CrackLine
         The cracks in each row stand together.
     turns : ndarray, shape (p,)
-        Angles by which all mouths are turned, rad.
+        Angles by which all mouths are turned, rad; only 0 in a plate of any outline.
     residual_stress : callable, optional
         See :func:`stress_intensity`.
     straight : bool
@@ -370,7 +378,7 @@ def _mapped(states: Sequence[State], edge: CrackedEdge, cracks: CrackWeights) ->
     return mapped(states, of)[0].reshape(shape) + residual
 
 
-def _check_apart(rows: Sequence[tuple[CrackLine, ...]]) -> None:
+def check_apart(rows: Sequence[tuple[CrackLine, ...]]) -> None:
     """Raise :class:`InputError` if two cracks of a row touch, or nearly do."""
     for row in rows:
         ends = []

@@ -1,6 +1,7 @@
 from .fields import PlateField as PlateField
 from .fields import lug_of as lug_of
 from .fields import plate_field as plate_field
+from .images import OtherEdges as OtherEdges
 from .outline import Hole as Hole
 from .outline import Lug as Lug
 from .outline import Part as Part

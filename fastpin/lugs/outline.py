@@ -6,6 +6,7 @@ straight and circular parts. Parts and further holes have names; supports and lo
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -41,6 +42,10 @@ MOST_EXTENT = 1000.0
 
 MOST_PARTS = 300
 """Most parts of the outline and most further holes."""
+
+
+SAME_PLACE = 1e-9
+"""Part of its length by which a part is longer for a ray, so that none passes between two parts."""
 
 
 @dataclass(frozen=True)
@@ -133,6 +138,22 @@ class Part:
         beyond_chord = sign * (np.conj(self.end - self.start) * (z - self.start)).imag < 0.0
         turn = np.abs(turn) * np.where(beyond_chord, -sign, sign)  # also on the chord, where it is a half turn
         return np.asarray(turn + 2.0 * math.pi * sign * (beyond_chord & (np.abs(z - centre) < radius)))
+
+    def crossing(self, start: complex, along: complex) -> float:
+        """Distance from a point along a unit vector to the part, m; infinite if the ray does not meet it."""
+        if self.circle is None:
+            side, chord = np.conj(along) * (self.start - start), np.conj(along) * (self.end - self.start)
+            if chord.imag == 0.0:
+                return math.inf
+            share = -side.imag / chord.imag
+            places = [float((side + share * chord).real)] if -SAME_PLACE < share < 1.0 + SAME_PLACE else []
+        else:
+            centre, radius, first, sweep = self.circle
+            middle, most = np.conj(along) * (centre - start), 0.5 * abs(sweep) + SAME_PLACE
+            half, back = radius * radius - middle.imag**2, cmath.exp(-1j * (first + 0.5 * sweep))
+            both = [] if half < 0.0 else [float(middle.real + sign * math.sqrt(half)) for sign in (-1.0, 1.0)]
+            places = [place for place in both if abs(_angle((start + place * along - centre) * back)) < most]
+        return min((place for place in places if place > 0.0), default=math.inf)
 
     def scaled(self, factor: float) -> Part:
         """The same part with all lengths times `factor`. One that is not positive raises :class:`InputError`."""

@@ -58,12 +58,15 @@ class Boundary:
         Whether each part has no support.
     turn : float
         Largest angle of a circular panel, rad. Ten nodes resolve the default to 1e-12.
+    beside : tuple of (Part, float)
+        Lines in the plate, such as cracks, and the longest panel in parts of its distance from each.
     """
 
     parts: tuple[Part, ...]
     marks: tuple[tuple[str | None, tuple[int, ...]], ...]
     free: tuple[bool, ...]
     turn: float = math.pi / 4 * (1.0 + 1e-9)
+    beside: tuple[tuple[Part, float], ...] = ()
 
     def halvings(self, place: int, most: int) -> int:
         """Halvings towards the start of the part at `place`: none where the edge goes on as it is.
@@ -208,7 +211,7 @@ def _panels(loops: Sequence[Boundary], parts: list[Part], fineness: Fineness) ->
         for place in range(len(loop.parts)):
             halvings = loop.halvings(place, fineness.halvings)
             following = loop.halvings((place + 1) % len(loop.parts), fineness.halvings)
-            for low, high in _cuts(parts, loop.parts[place], (halvings, following), loop.turn):
+            for low, high in _cuts(parts, loop, place, (halvings, following)):
                 found.append((parts.index(loop.parts[place]), 0.5 * (low + high), high - low))
                 if len(found) * fineness.points > MOST_NODES:
                     names = Counter(parts[each].name or "the pin's hole" for each, _, _ in found)
@@ -223,19 +226,22 @@ def _panels(loops: Sequence[Boundary], parts: list[Part], fineness: Fineness) ->
     return found
 
 
-def _cuts(parts: list[Part], part: Part, halvings: tuple[int, int], most_turn: float) -> list[tuple[float, float]]:
-    """Ends of a part's panels, in shares of its length. A panel is no longer than its distance from other parts."""
+def _cuts(parts: list[Part], loop: Boundary, place: int, halvings: tuple[int, int]) -> list[tuple[float, float]]:
+    """Ends of the panels of a loop's part, in shares of its length. None is longer than its distance from others."""
+    part = loop.parts[place]
     others = [other for other in parts if other is not part]
     at_start = [min(abs(other.start - part.start), abs(other.end - part.start)) < TOUCHING for other in others]
     at_end = [min(abs(other.start - part.end), abs(other.end - part.end)) < TOUCHING for other in others]
     sweep = abs(part.circle[3]) if part.circle is not None else 0.0
     found: list[tuple[float, float]] = []
-    ends_of = np.linspace(0.0, 1.0, max(1, math.ceil(sweep / most_turn)) + 1).tolist()
+    ends_of = np.linspace(0.0, 1.0, max(1, math.ceil(sweep / loop.turn)) + 1).tolist()
     waiting = [(low, high, halvings[0] * (low == 0.0), halvings[1] * (high == 1.0)) for low, high in pairwise(ends_of)]
     while waiting and len(found) < MOST_NODES:
         low, high, left, right = waiting.pop()
         points = part.at(np.linspace(low, high, 7))
         too_long = left > 0 or right > 0
+        for line, most in loop.beside:
+            too_long = too_long or (high - low) * part.length > most * float(distances(line, points).min())
         for other, starts, ends in zip(others, at_start, at_end, strict=True):
             met = (starts and (low == 0.0 or halvings[0] == 0)) or (ends and (high == 1.0 or halvings[1] == 0))
             if too_long or met:

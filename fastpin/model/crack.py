@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import itertools
 import math
 from collections.abc import Sequence
@@ -88,6 +89,9 @@ class CrackGrowth:
 MOST_OF_WALL = 0.9
 """Largest depth of a tip in parts of the wall. The ligament beyond is not elastic for long."""
 
+MOST_OF_LIGAMENT = 0.95
+"""Largest length of a crack in a plate of any outline, in parts of its line to the edge where it leaves the plate."""
+
 
 def edge_of(body: str) -> Literal["plate", "seat"]:
     """The name of an edge as a type checker knows it."""
@@ -108,16 +112,42 @@ def depth_of(angle: float, length: float) -> float:
     return abs(1.0 + length * complex(math.cos(angle), math.sin(angle))) - 1.0
 
 
-def check_length(field: str, problem: Problem, body: str, angle: float, longest: float) -> None:
-    """Raise :class:`InputError` if a length, m, is too large for the body."""
+def other_edges(problem: Problem, body: str) -> Any:
+    """The edges beyond the hole of a plate of any outline, :class:`fastpin.lugs.OtherEdges`; None for another body."""
+    in_bush = body == "plate" and problem.joint.bush is not None
+    return None if in_bush else problem.plate_body.lug.other_edges
+
+
+def check_length(
+    field: str,
+    problem: Problem,
+    body: str,
+    angle: float,
+    longest: float,
+    theta: float | None = None,
+    part: float = MOST_OF_LIGAMENT,
+) -> None:
+    """Raise :class:`InputError` if a length, m, is too large for the body.
+
+    In a plate of any outline a crack at `theta` may take a `part` of its ligament.
+    """
     length = units(problem)["length"]
     radius = problem.hole_radius * near_rim(problem, edge_of(body))
-    wall = wall_of(problem, body)
+    wall, edges = wall_of(problem, body), other_edges(problem, body)
     if is_above(longest, 1e4 * radius):  # up to there it was checked against the crack in a plate without a hole
         raise InputError(field, f"must be at most 10000 radii of the hole, not {length.text(longest)}")
     if is_above(depth_of(angle, longest / radius), MOST_OF_WALL * wall):
         words = f"must end within {MOST_OF_WALL:g} of the wall of {length.text(wall * radius)}"
         raise InputError(field, f"{words}, not be {length.text(longest)}")
+    if edges is None or theta is None:
+        return
+    ligament = edges.ligament(theta, angle) * radius
+    if is_above(longest, part * ligament):
+        end = radius * cmath.exp(1j * theta) + ligament * cmath.exp(1j * (theta + angle))
+        within = "its ligament" if part == 1.0 else f"{part:g} of its ligament"
+        words = f"must end within {within} of {length.text(ligament)}, not be {length.text(longest)}"
+        place = f"x = {length.text(end.real)}, y = {length.text(end.imag)}"
+        raise InputError(field, f"{words}: the line of the crack leaves the plate at {place}")
 
 
 def check_crack(problem: Problem, crack: CrackGrowth) -> None:
@@ -126,14 +156,16 @@ def check_crack(problem: Problem, crack: CrackGrowth) -> None:
     if material_of(problem, body).is_rigid:
         raise InputError("body", f"the {owner_of(problem, body)} is rigid: no crack grows in it")
     isotropic_material("body", problem, body, "a stress intensity")
-    if not problem.plate_body.lug.has_inside and (body == "seat" or problem.joint.bush is None):
-        raise InputError("body", NO_INSIDE)
-    check_length("last", problem, body, crack.angle, crack.last)
+    check_inside(problem, body)
+    check_length("last", problem, body, crack.angle, crack.last, crack.theta, 1.0)
     law_of(problem, crack)
 
 
-NO_INSIDE = "a compliance gives the stress near its hole only: a crack needs all of it"
-"""Refusal of a plate that is a compliance."""
+def check_inside(problem: Problem, body: str) -> None:
+    """Raise :class:`InputError` if the stress of the body is known near its hole only."""
+    if not problem.plate_body.lug.has_inside and (body == "seat" or problem.joint.bush is None):
+        words = "a compliance gives the stress near its hole only, and a crack needs all of it"
+        raise InputError("body", f"{words}: a file with the outline gives it everywhere")
 
 
 def law_of(problem: Problem, crack: CrackGrowth) -> KnownLaw:

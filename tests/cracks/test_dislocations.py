@@ -8,6 +8,7 @@ import pytest
 
 from fastpin.cracks.dislocations import (
     CrackLine,
+    FreeRim,
     _freed,
     _influence,
     _rim_influence,
@@ -53,9 +54,9 @@ def tractions(field, line, n):
 
 def factors(field, *lines, far=math.inf, n=None):
     """(F_I, F_II) = K/sqrt(pi a) of each crack."""
-    n = n or needed_points(lines, far)
+    n = n or needed_points(lines, FreeRim(far))
     loads = np.array([tractions(field, line, n) for line in lines])
-    K = np.einsum("cmdpt,dpt->cm", weights(lines, far, n), loads)
+    K = np.einsum("cmdpt,dpt->cm", weights(lines, FreeRim(far), n), loads)
     return K / np.sqrt(np.pi * np.array([line.length for line in lines]))[:, None]
 
 
@@ -128,10 +129,10 @@ def test_a_wide_ring_is_a_plate():
 @pytest.mark.parametrize("far", [math.inf, 2.0], ids=["plate", "ring"])
 def test_turned_and_mirrored_cracks(far):
     lines = (CrackLine(0.2, 0.3, 0.3), CrackLine(2.0, -0.2, 0.5))
-    first = weights(lines, far, 80)
-    turned = weights(tuple(line._replace(mouth=line.mouth + 1.0) for line in lines), far, 80)
+    first = weights(lines, FreeRim(far), 80)
+    turned = weights(tuple(line._replace(mouth=line.mouth + 1.0) for line in lines), FreeRim(far), 80)
     assert turned == pytest.approx(first, rel=1e-9, abs=1e-12)
-    mirrored = weights(tuple(CrackLine(-line.mouth, -line.angle, line.length) for line in lines), far, 80)
+    mirrored = weights(tuple(CrackLine(-line.mouth, -line.angle, line.length) for line in lines), FreeRim(far), 80)
     sign = np.array([1.0, -1.0])
     assert mirrored * sign[:, None, None, None] * sign == pytest.approx(first, rel=1e-9, abs=1e-12)
 

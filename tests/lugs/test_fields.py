@@ -18,7 +18,7 @@ from fastpin.lugs.panels import Fineness
 from fastpin.lugs.plates import hole_compliance, plate_compliance
 from fastpin.states.margins import part_of
 from fastpin.states.yielding import place_words, von_mises_peak
-from tests.support.lugs import disc
+from tests.support.lugs import disc, lug_with_nose
 from tests.support.tiers import some_survey
 
 STEEL = Material(2.6, 0.3)
@@ -37,14 +37,6 @@ def stress_at(body, z, loads=(0.0, 0.0, 0.0), pulled=True):
     radial, hoop, shear = plate_stress(problem_with(body), given, np.r_[loads, 0.0], np.angle(z), np.abs(z) - 1.0)
     mean, half, turn = 0.5 * (radial + hoop), 0.5 * (radial - hoop) + 1j * shear, (z / np.abs(z)) ** 2
     return np.array([mean + (half * turn).real, mean - (half * turn).real, (half * turn).imag])
-
-
-def lug_with_nose(holes=(), **given):
-    """Nose and sides at 2.2 R, held at y = 10 R."""
-    side, top = 2.2 + 0j, 2.2 + 10j
-    ends = side, top, -top.conjugate(), -side
-    outline = [Part(name, *ends[k : k + 2]) for k, name in enumerate(("right", "top", "left"))]
-    return Lug(0.3, "stress", 1.0, (*outline, Part("nose", -side, side, -2.2j)), {"top": "both"}, holes=holes, **given)
 
 
 def stepped_lug():

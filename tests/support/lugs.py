@@ -1,11 +1,13 @@
 """Finite plates for tests."""
 
+import json
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
+from fastpin.bodies import Compliance
 from fastpin.bodies.compliance import complex_coefficients
 from fastpin.lugs import plates
 from fastpin.lugs.outline import Lug, Part, rectangle
@@ -26,6 +28,20 @@ def plate(x: tuple[float, float] = (-2.5, 2.5), y: tuple[float, float] = (-2.5, 
     """A rectangle with a hole of radius 1, held at its top."""
     return Lug(**{"nu": 0.3, "plane": "strain", "hole_radius": 1.0, "outline": rectangle(x, y),
                   "supports": {"top": "both"}, **fields})  # fmt: skip
+
+
+def lug_with_nose(holes=(), **given):
+    """Nose and sides at 2.2 R, held at y = 10 R."""
+    side, top = 2.2 + 0j, 2.2 + 10j
+    ends = side, top, -top.conjugate(), -side
+    outline = [Part(name, *ends[k : k + 2]) for k, name in enumerate(("right", "top", "left"))]
+    return Lug(0.3, "stress", 1.0, (*outline, Part("nose", -side, side, -2.2j)), {"top": "both"}, holes=holes, **given)
+
+
+def outlined(lug: Lug) -> Compliance:
+    """A compliance with the outline of a plate, and with a matrix that means nothing."""
+    matrix = np.diag(0.1 ** np.repeat([0.0, 0.0, 1.0, 4.0], [2, 4, 4, 4]))
+    return Compliance(lug.nu, lug.plane, lug.hole_radius, matrix, outline=json.dumps(lug.document()))
 
 
 def make_rough(monkeypatch: pytest.MonkeyPatch) -> None:
