@@ -14,3 +14,5 @@ from .laws import Nasgro as Nasgro
 from .laws import Walker as Walker
 from .laws import intrinsic_length as intrinsic_length
 from .laws import paris as paris
+from .together import GrowthTogether as GrowthTogether
+from .together import growth_together as growth_together
