@@ -20,7 +20,7 @@ from fastpin.lugs.fitting import FittedArc, circle_of, fitted, is_corner, kinks
 from fastpin.lugs.outline import Hole, Part, crossing, distances, point_text
 from fastpin.model.checks import as_toml, number, string
 from fastpin.tables.columns import CsvColumn, title_and_unit
-from fastpin.tables.load_units import Basis, LoadUnit, load_unit
+from fastpin.tables.load_units import Basis, LoadUnit, load_unit, plain_unit
 from fastpin.tables.reader import Wanted, read_table
 
 FILE_KEYS = ("file", "unit", "layer", "origin", "tolerance")
@@ -67,7 +67,7 @@ def drawn_outline(
     layers = None if given is None else tuple(map(str, given if isinstance(given, list) else [given]))
     if name is None:
         return None
-    frame = _Frame(_factor(Basis(system=section.units).plain("length")), radius, origin)
+    frame = _Frame(_factor(plain_unit("length", Basis(system=section.units))), radius, origin)
     try:
         parts = [_moved(part, -origin) for part in _parts(folder / name, unit, layers, section.units)]
         return _chosen(parts, TOLERANCE * radius if tolerance is None else tolerance, holes, frame)
@@ -119,7 +119,9 @@ def _points(path: Path, unit: str | None, system: str) -> list[complex]:
     def to_si(name: str, written: str) -> LoadUnit:
         if unit and written and unit != written:
             raise InputError(name, f"the unit is {unit}, and the header has {written}; give one of them")
-        return load_unit("ux", unit or written, Basis()) if unit or written else Basis(system=system).plain("length")
+        return (
+            load_unit("ux", unit or written, Basis()) if unit or written else plain_unit("length", Basis(system=system))
+        )
 
     too_many = f"more than {MOST_POINTS:,} points can't be read"
     _, (x, y) = read_table(path, Wanted(find, (0, 1), to_si, "points", MOST_POINTS, too_many, False, "x and y"))

@@ -135,14 +135,6 @@ def _equations(body: Compliance, beside: Sequence[tuple[Part, float]]) -> Equati
     return Equations(lug, edges, lambda done: None)
 
 
-def _is_fine(edges: Edges, lines: Sequence[Part]) -> bool:
-    """Whether no panel is too long for its distance from the lines of cracks."""
-    panels = np.flatnonzero(edges.part >= HOLE)
-    points, _ = edges.at(panels[:, None], np.linspace(-1.0, 1.0, 7))
-    away = np.array([distances(line, points.ravel()).reshape(points.shape).min(axis=1) for line in lines])
-    return bool(np.all(2.0 * edges.half[panels] <= 1.25 * APART * away))
-
-
 @lru_cache(maxsize=256)
 def _kept(body: Compliance, rays: tuple[Ray, ...], part: float) -> tuple[np.ndarray, np.ndarray]:
     """The coefficients between the kept points of all lines."""
@@ -151,7 +143,10 @@ def _kept(body: Compliance, rays: tuple[Ray, ...], part: float) -> tuple[np.ndar
     along = np.exp(1j * np.array([mouth + angle for mouth, angle in rays]))
     ends = [Part("", *pair) for pair in zip(starts.tolist(), (starts + longest * along).tolist(), strict=True)]
     equations = _shared(body)
-    if not _is_fine(equations.edges, ends):
+    edges, panels = equations.edges, np.flatnonzero(equations.edges.part >= HOLE)
+    points, _ = edges.at(panels[:, None], np.linspace(-1.0, 1.0, 7))
+    away = np.array([distances(line, points.ravel()).reshape(points.shape).min(axis=1) for line in ends])
+    if np.any(2.0 * edges.half[panels] > 1.25 * APART * away):  # a panel is too long for its distance from a crack
         equations = _equations(body, [(end, APART) for end in ends])
     count = _count(equations.edges, ends)
     s = np.multiply.outer(longest, _chebyshev(count)).ravel()

@@ -98,7 +98,8 @@ class Boundary:
         A square corner between a free edge and one without friction is half of a straight free edge.
         """
         turn, same = self._turn(place), self.free[place - 1] == self.free[place]
-        return turn < -LEAST_TURN or not (same or (turn > math.pi / 2 - 1e-6 and self._slides(place)))
+        slides = "both" not in (self.marks[place - 1][0], self.marks[place][0])
+        return turn < -LEAST_TURN or not (same or (turn > math.pi / 2 - 1e-6 and slides))
 
     def _is_mirrored(self, place: int) -> bool:
         """Whether one or both parts at a corner are straight and slide, and the other one is free of loads."""
@@ -110,9 +111,6 @@ class Boundary:
             for part, along, hold in held
         ]
         return bool(held) and all(slide) and not any(loads for *_, loads in both)
-
-    def _slides(self, place: int) -> bool:
-        return "both" not in (self.marks[place - 1][0], self.marks[place][0])
 
     def _turn(self, place: int) -> float:
         """Angle by which the edge turns at the start of the part, rad; negative at re-entrant corners."""
