@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -47,9 +47,6 @@ from fastpin.model.grid import Grid
 from fastpin.model.inputs import open_input
 from fastpin.model.loads import LOADS, REMOTE, TEMPERATURE, P, Q
 from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
-
-if TYPE_CHECKING:  # few plates need it
-    from fastpin.lugs import OtherEdges, PlateField
 
 FORMAT = "fastpin compliance"
 """Name of the file format, its first entry."""
@@ -423,13 +420,14 @@ class Compliance(PlateBody):
         return f"apart from {length(apart)} about sharp corners and ends of supports: {named}{more}" if named else ""
 
     @property
-    def other_edges(self) -> OtherEdges | None:
+    def other_edges(self) -> Any:
         from fastpin import lugs
 
         return lugs.OtherEdges(self) if self.outline else None
 
     @property
-    def _inside(self) -> PlateField:
+    def _inside(self) -> Any:
+        """The :class:`fastpin.lugs.PlateField` of the outline."""
         from fastpin import lugs
 
         return lugs.plate_field(self)

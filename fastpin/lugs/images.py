@@ -25,7 +25,7 @@ from fastpin.lugs.cauchy import HOLE, EdgeField, traction_on
 from fastpin.lugs.fields import lug_of
 from fastpin.lugs.outline import Part, distances
 from fastpin.lugs.panels import Edges, Fineness
-from fastpin.lugs.plates import Equations, boundaries
+from fastpin.lugs.plates import PlateEquations, boundaries
 
 FINENESS = Fineness(10, 14)
 """The discretisation."""
@@ -121,18 +121,26 @@ def _ligament(body: Compliance, mouth: float, angle: float) -> float:
 
 
 @lru_cache(maxsize=1)
-def _shared(body: Compliance) -> Equations:
+def _shared(body: Compliance) -> PlateEquations:
     """The equations on edges for all cracks up to :data:`SHALLOW` of their ligaments."""
     lug = lug_of(body)
     hole = [part.scaled(1.0 / lug.hole_radius) for part in lug.contact_edge]
     return _equations(body, [(part, APART * (1.0 - SHALLOW)) for part in hole])
 
 
-def _equations(body: Compliance, beside: Sequence[tuple[Part, float]]) -> Equations:
+def _equations(body: Compliance, beside: Sequence[tuple[Part, float]]) -> PlateEquations:
     lug = lug_of(body)
     first, *others = boundaries(lug, HARMONICS)
     edges = Edges([first, *(replace(loop, beside=tuple(beside)) for loop in others)], FINENESS)
-    return Equations(lug, edges, lambda done: None)
+    return PlateEquations(lug, edges, lambda done: None)
+
+
+def is_fine(edges: Edges, lines: Sequence[Part]) -> bool:
+    """Whether no panel is too long for its distance from the lines of cracks."""
+    panels = np.flatnonzero(edges.part >= HOLE)
+    points, _ = edges.at(panels[:, None], np.linspace(-1.0, 1.0, 7))
+    away = np.array([distances(line, points.ravel()).reshape(points.shape).min(axis=1) for line in lines])
+    return bool(np.all(2.0 * edges.half[panels] <= 1.25 * APART * away))
 
 
 @lru_cache(maxsize=256)
@@ -143,10 +151,7 @@ def _kept(body: Compliance, rays: tuple[Ray, ...], part: float) -> tuple[np.ndar
     along = np.exp(1j * np.array([mouth + angle for mouth, angle in rays]))
     ends = [Part("", *pair) for pair in zip(starts.tolist(), (starts + longest * along).tolist(), strict=True)]
     equations = _shared(body)
-    edges, panels = equations.edges, np.flatnonzero(equations.edges.part >= HOLE)
-    points, _ = edges.at(panels[:, None], np.linspace(-1.0, 1.0, 7))
-    away = np.array([distances(line, points.ravel()).reshape(points.shape).min(axis=1) for line in ends])
-    if np.any(2.0 * edges.half[panels] > 1.25 * APART * away):  # a panel is too long for its distance from a crack
+    if not is_fine(equations.edges, ends):
         equations = _equations(body, [(end, APART) for end in ends])
     count = _count(equations.edges, ends)
     s = np.multiply.outer(longest, _chebyshev(count)).ravel()
@@ -155,7 +160,7 @@ def _kept(body: Compliance, rays: tuple[Ray, ...], part: float) -> tuple[np.ndar
 
 
 def image(
-    equations: Equations, z: np.ndarray, direction: np.ndarray, mouth: np.ndarray
+    equations: PlateEquations, z: np.ndarray, direction: np.ndarray, mouth: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """The coefficients of g and of conj(g) in the tractions of images, both (m, m).
 

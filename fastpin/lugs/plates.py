@@ -232,7 +232,7 @@ def hole_compliance(order: int, kolosov: float) -> np.ndarray:
     return matrix
 
 
-class Equations:
+class PlateEquations:
     """The integral equations of a plate, factored once.
 
     Parameters
@@ -306,7 +306,7 @@ def respond(
     if lug.floats:
         modes = _rigid_modes(lug, edges)
         tractions, resultants = _balanced(tractions, modes)
-    equations = Equations(lug, edges, lambda done: progress(0.7 * done), modes)
+    equations = PlateEquations(lug, edges, lambda done: progress(0.7 * done), modes)
     u, pulled = equations.solve(tractions)
     # 2G u is 2 by a unit of G times the strain
     warm, hindered = equations.solve(np.zeros((edges.z.size, 1)), -2.0 * edges.z[:, None])

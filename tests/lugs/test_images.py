@@ -11,7 +11,7 @@ from fastpin.lugs.cauchy import HOLE, EdgeField
 from fastpin.lugs.images import OtherEdges, dislocation
 from fastpin.lugs.outline import Hole, Lug, Part, rectangle
 from fastpin.lugs.panels import Edges, Fineness
-from fastpin.lugs.plates import Equations, boundaries
+from fastpin.lugs.plates import PlateEquations, boundaries
 from tests.support.lugs import disc, lug_with_nose, outlined, plate
 from tests.support.outlines import FreeOutline
 
@@ -96,8 +96,8 @@ def test_edges_of_all_cracks_suit_short_ones(part):
     hole = [(each, images.APART * (1.0 - images.SHALLOW)) for each in Hole("", 0j, 1.0).parts]
     first, rim = boundaries(images.lug_of(body), 4)
     edges = Edges([first, images.replace(rim, beside=tuple(hole))], images.FINENESS)
-    assert images._is_fine(edges, [Part("", 1.0 + 0.0j, 1.0 + part + 0.0j)])
-    assert not images._is_fine(edges, [Part("", 1.0 + 0.0j, 1.95 + 0.0j)])
+    assert images.is_fine(edges, [Part("", 1.0 + 0.0j, 1.0 + part + 0.0j)])
+    assert not images.is_fine(edges, [Part("", 1.0 + 0.0j, 1.95 + 0.0j)])
     assert images._count(edges, [Part("", 1.0 + 0.0j, 1.0 + part + 0.0j)]) == 24
 
 
@@ -138,7 +138,7 @@ def test_images_are_reciprocal():
     """The work of one dislocation's tractions on the opening of another one is the same with both exchanged."""
     lug = plate()
     loops = boundaries(lug, 4)
-    equations = Equations(lug, Edges(loops, Fineness(10, 8)), lambda done: None)
+    equations = PlateEquations(lug, Edges(loops, Fineness(10, 8)), lambda done: None)
     gauss, weight = np.polynomial.legendre.leggauss(12)
     ends = np.array([0.3, 0.6])
     s = np.concatenate([0.5 * end * (1.0 + gauss) for end in ends] + [ends])
