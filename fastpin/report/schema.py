@@ -83,8 +83,10 @@ def _compliance() -> outputs.Schema:
             "order": outputs.WHOLE,
             "matrix": outputs.list_of(outputs.list_of(outputs.NUMBER)),
             "columns": outputs.map_of(outputs.list_of(outputs.NUMBER), "response to each remote stress"),
+            "lug": {"type": "object", "description": "outline, further holes, supports and loads"},
             "made_by": outputs.TEXT,
-        }
+        },
+        without=("lug",),
     )
 
 

@@ -7,10 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin import InputError, Material, MaterialPair, Points, Problem, solve
+from fastpin import InputError, Points, solve
 from fastpin.bodies import Compliance, Ring
-from fastpin.elasticity.stress import plate_stress
-from fastpin.elasticity.tractions import Tractions
 from fastpin.lugs import fields
 from fastpin.lugs.fields import lug_of, plate_field
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad, rectangle
@@ -18,25 +16,8 @@ from fastpin.lugs.panels import Fineness
 from fastpin.lugs.plates import hole_compliance, plate_compliance
 from fastpin.states.margins import part_of
 from fastpin.states.yielding import place_words, von_mises_peak
-from tests.support.lugs import disc, lug_with_nose
+from tests.support.lugs import disc, lug_with_nose, problem_with, stress_at
 from tests.support.tiers import some_survey
-
-STEEL = Material(2.6, 0.3)
-
-
-def problem_with(body, plane="stress"):
-    return Problem.from_load_parameter(MaterialPair(STEEL, STEEL, plane=plane), 0.6, 0.3, plate_body=body)
-
-
-def stress_at(body, z, loads=(0.0, 0.0, 0.0), pulled=True):
-    """(sxx, syy, sxy) at points under t_r = -sin(theta)/pi on the hole, resultant (0, -1), or under loads alone."""
-    theta = np.linspace(-math.pi, math.pi, 20001)
-    patch = np.column_stack([theta, -np.sin(theta) / math.pi, np.zeros(theta.size)])
-    z = np.atleast_1d(np.asarray(z, dtype=complex))
-    given = Tractions((patch,) if pulled else ())
-    radial, hoop, shear = plate_stress(problem_with(body), given, np.r_[loads, 0.0], np.angle(z), np.abs(z) - 1.0)
-    mean, half, turn = 0.5 * (radial + hoop), 0.5 * (radial - hoop) + 1j * shear, (z / np.abs(z)) ** 2
-    return np.array([mean + (half * turn).real, mean - (half * turn).real, (half * turn).imag])
 
 
 def stepped_lug():

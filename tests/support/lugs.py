@@ -1,14 +1,19 @@
 """Finite plates for tests."""
 
 import json
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
-from fastpin.bodies import Compliance
+from fastpin import Material, MaterialPair, Problem
+from fastpin.bodies import Compliance, Ring
 from fastpin.bodies.compliance import complex_coefficients
+from fastpin.elasticity.stress import plate_stress
+from fastpin.elasticity.tractions import Tractions
 from fastpin.lugs import plates
 from fastpin.lugs.outline import Lug, Part, rectangle
 from fastpin.lugs.panels import Fineness
@@ -71,3 +76,23 @@ def mesh_edge(chords: int, side: int = 30) -> np.ndarray:
     up = 10j * np.linspace(0.0, 1.0, side + 1)
     across = np.linspace(2.2, -2.2, 13) + 10j
     return np.concatenate([nose[:-1], 2.2 + up[:-1], across[:-1], -2.2 + up[:0:-1]])
+
+
+def problem_with(body: Compliance | Ring) -> Problem:
+    """A steel pin in a steel plate in plane stress."""
+    return Problem.from_load_parameter(
+        MaterialPair(Material(2.6, 0.3), Material(2.6, 0.3), plane="stress"), 0.6, 0.3, plate_body=body
+    )
+
+
+def stress_at(
+    body: Compliance, z: ArrayLike, loads: tuple[float, float, float] = (0.0, 0.0, 0.0), pulled: bool = True
+) -> np.ndarray:
+    """(sxx, syy, sxy) at points under t_r = -sin(theta)/pi on the hole, resultant (0, -1), or under loads alone."""
+    theta = np.linspace(-math.pi, math.pi, 20001)
+    patch = np.column_stack([theta, -np.sin(theta) / math.pi, np.zeros(theta.size)])
+    z = np.atleast_1d(np.asarray(z, dtype=complex))
+    given = Tractions((patch,) if pulled else ())
+    radial, hoop, shear = plate_stress(problem_with(body), given, np.r_[loads, 0.0], np.angle(z), np.abs(z) - 1.0)
+    mean, half, turn = 0.5 * (radial + hoop), 0.5 * (radial - hoop) + 1j * shear, (z / np.abs(z)) ** 2
+    return np.array([mean + (half * turn).real, mean - (half * turn).real, (half * turn).imag])
