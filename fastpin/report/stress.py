@@ -143,7 +143,9 @@ def _check_depth(depth: float, problem: Problem, body: points.Body) -> None:
     if math.isinf(wall):
         raise InputError("depth", f"must be above 0, not {depth:g}")
     if far is None:
-        words = f"at most {wall:.3g} radii: a compliance gives the stress near its hole only"
+        known = problem.plate_body.lug.has_inside
+        why = "the nearest other edge" if known else "a compliance gives the stress near its hole only"
+        words = f"at most {wall:.3g} radii: {why}"
         raise InputError("depth", f"must be above 0 and {words}; not {depth:g}")
     if far == 0.0:
         raise InputError("depth", f"must be above 0 and below 1 radius, the centre of the pin, not {depth:g}")

@@ -372,8 +372,8 @@ class State(ReadOnly):
 
         The remote stress, the force on the pin and the moment at its centre are included, and so is the press fit of a
         bush. The body "plate" holds its bush: points beyond the outer radius of the bush lie in the plate round it. The
-        body "seat" is this plate alone: its points are counted from the seat of the bush. A compliance gives the stress
-        near its hole only: up to its ``reach``.
+        body "seat" is this plate alone: its points are counted from the seat of the bush. A compliance without its
+        outline gives the stress near its hole only: up to its ``reach``.
 
         Parameters
         ----------

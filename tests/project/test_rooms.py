@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 52,
     "constants of modules": 1_329,
     "hidden imports": 0,
-    "lines of code": 49_654,
+    "lines of code": 49_656,
     "lines of code of the core": 19_234,
     "files of the core": 137,
     "functions of the core": 2_040,
