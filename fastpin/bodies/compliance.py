@@ -443,7 +443,9 @@ class Compliance(PlateBody):
         is the radius of the nearest other edge.
         """
         if self.outline:
-            return self._inside.nearest
+            from fastpin import lugs
+
+            return lugs.lug_of(self).nearest
         size = np.abs(self.matrix).max(axis=1)[6:].reshape(-1, 4).max(axis=1)  # of the harmonics 2 to K
         size = np.maximum.accumulate(size[::-1])[::-1]  # in a symmetric plate some harmonics vanish
         if size[0] == 0.0:
@@ -464,7 +466,7 @@ class Compliance(PlateBody):
         decaying = np.array([b, -order * b, (1.0 + order) * b + np.conj(a)])
         decaying[:, 0] = 0.0  # the constant belongs to the growing ones
         if self.outline:
-            growing[:2], growing[2, 2:] = 0.0, 0.0  # what is left has negative powers of z
+            growing[:2], growing[2, 2:] = 0.0, 0.0  # only negative powers of z stay
             column = self._column(rim, tractions, remote, self._inside.order)
             return PlateWalls(Wall(growing, decaying, 1.0, 1.0, (partial(self._inside.smooth, column),)), None)
         far = self.reach

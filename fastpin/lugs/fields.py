@@ -57,8 +57,6 @@ class PlateField:
     order : int
     edges : Edges
         Panels and nodes of all edges.
-    nearest : float
-        Distance of the nearest other edge from the hole's centre.
     singular : ndarray of complex
         Places on other edges at which the stress is infinite.
     apart : float
@@ -78,7 +76,6 @@ class PlateField:
         loops = boundaries(lug, order)[1:]
         singular = [loop.parts[k].start for loop in loops for k in range(len(loop.parts)) if loop.is_singular(k)]
         self.singular = np.array(singular, dtype=complex)
-        self.nearest = lug.nearest
         self._edges = [part.scaled(1.0 / lug.hole_radius) for part in lug.edges]
         self._outer = edges.part_of_node >= len(lug.contact_edge)
         field = EdgeField.of(edges, self.kolosov, moved, pulled).on(edges.part >= len(lug.contact_edge))

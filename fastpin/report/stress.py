@@ -200,11 +200,11 @@ def field_curves(
     if component == UTILIZATION:
         drawn = ("plate",)
     lug, bush = state.problem.plate_body.lug, state.problem.joint.bush or 1.0
-    if lug.edge_lines:  # a point takes longer there
+    if lines := lug.edge_lines:  # a point takes longer there
         fineness //= 2
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
-    deepest = np.minimum(outer, bush * _farthest(lug.edge_lines, theta)) - 1.0
-    if not lug.edge_lines:
+    deepest = np.minimum(outer, bush * _farthest(lines, theta)) - 1.0
+    if not lines:
         deepest = np.minimum(outer - 1.0, points.known_depth(state.problem, "plate"))
     for each in drawn:
         part, far = np.linspace(0.0, 1.0, fineness)[:, None], points.far_rim(state.problem, each)
