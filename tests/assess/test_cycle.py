@@ -5,19 +5,15 @@ from dataclasses import replace
 
 import pytest
 
+from fastpin import MATERIALS, LoadHistory, Material, MaterialPair, Problem, Result, solve
 from fastpin.assess.cycle import cycle_line, document, write_csv
 from fastpin.assess.fatigue import MOST_STOPS, fatigue_lines, spectrum_damages, spectrum_line
 from fastpin.assess.outputs import json_ready
 from fastpin.bodies import Bushing
+from fastpin.model import FatigueConstants
 from fastpin.model.angles import from_bottom
-from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
 from fastpin.report.states import cycle_lines
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
-from fastpin.states.load_cycle import LoadCycle
+from fastpin.states import LoadCycle
 from tests.support.samples import PAIR
 
 HISTORY = LoadHistory([{"P": 2e6}]) + LoadHistory([{"Q": 5e5}, {"Q": -5e5}]).repeated(3)

@@ -4,13 +4,11 @@ import math
 
 import pytest
 
-from fastpin.assess.strength import _next_factor, failure_load
+from fastpin import MATERIALS, InputError, MaterialPair, Problem, solve
+from fastpin.assess import failure_load
+from fastpin.assess.strength import _next_factor
 from fastpin.damage import joint_strength
-from fastpin.errors import InputError
-from fastpin.model.laminate import Laminate
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
+from fastpin.model import Laminate
 
 PLATE = Laminate.from_layup("[0/45/-45/90]2s", "T300/914")
 

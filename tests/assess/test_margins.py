@@ -6,13 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin import LoadHistory, Material, MaterialPair, Problem, Result, solve
+from fastpin import Case, LoadHistory, Material, MaterialPair, Problem, Result, solve
 from fastpin.assess.margins import in_json, in_order, margin_lines, margin_rows, verdict
 from fastpin.bodies import Bushing, Ring
 from fastpin.damage import fatigue
 from fastpin.damage.margins import fatigue_margins, last_cycle_margins
 from fastpin.model import FatigueConstants
-from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.report import summary
 from fastpin.states.extremes import Found, KeptStates, marked_extremes

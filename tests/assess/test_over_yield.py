@@ -2,6 +2,7 @@
 
 import pytest
 
+from fastpin import MATERIALS, Case, LoadHistory, MaterialPair, Problem, Result, SolveOptions, solve
 from fastpin.assess import fatigue as assessment
 from fastpin.assess.crack import growth_line
 from fastpin.assess.fatigue import fatigue_lines, spectrum_damages, spectrum_line
@@ -9,19 +10,11 @@ from fastpin.assess.margins import in_json, margin_rows
 from fastpin.cracks import planned_growth
 from fastpin.damage import cycle_states
 from fastpin.damage.margins import reserve_margins
-from fastpin.model.assessment import FatigueAssessment
-from fastpin.model.case import Case
-from fastpin.model.crack import CrackGrowth
+from fastpin.model import CrackGrowth, FatigueAssessment
 from fastpin.model.doubts import doubts_given
 from fastpin.model.growth import Walker
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.pages.source import Source
 from fastpin.report.summary import document as summary
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
 from fastpin.states.margins import Margin, over_yield, over_yield_words
 from fastpin.storage.held import Held
 

@@ -5,10 +5,9 @@ import inspect
 import pytest
 
 import fastpin
-from fastpin import bodies
+from fastpin import MATERIALS, bodies
 from fastpin.bodies.body import PinBody, PlateBody
 from fastpin.bodies.kinds import KINDS, PINS, PLATES
-from fastpin.model.materials import MATERIALS
 from tests.support.bodies import JOINTS, UNLIKE, joint_problem
 
 

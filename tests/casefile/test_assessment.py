@@ -6,11 +6,10 @@ import pytest
 from hypothesis import given
 
 import fastpin
+from fastpin import CaseFileError, InputError
+from fastpin.casefile import case_text, parse_case
 from fastpin.casefile.beside import read_assessment
-from fastpin.casefile.reader import parse_case
 from fastpin.casefile.toml_text import CaseText
-from fastpin.casefile.writer import case_text
-from fastpin.errors import CaseFileError, InputError
 from fastpin.model import FatigueAssessment
 from tests.support.faults import fault_of
 from tests.support.strategies import assessments

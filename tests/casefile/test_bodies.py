@@ -7,12 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
-from fastpin.bodies.compliance import MOST_BYTES, Compliance
-from fastpin.casefile.reader import EXAMPLE, parse_case
-from fastpin.errors import InputError
-from fastpin.model.materials import MATERIALS, Material
-from fastpin.model.problem import Problem
+from fastpin import MATERIALS, InputError, Material, Problem
+from fastpin.bodies import Bushing, Compliance, Disk, Plate, Ring, Tube
+from fastpin.bodies.compliance import MOST_BYTES
+from fastpin.casefile import EXAMPLE, parse_case
 from tests.support.bodies import soft_plate
 from tests.support.body_texts import HEAD
 from tests.support.commands import refused

@@ -8,18 +8,15 @@ import pytest
 from hypothesis import given
 
 import fastpin
-from fastpin import cracks, damage
-from fastpin.casefile.reader import EXAMPLE, parse_case
-from fastpin.casefile.writer import case_text
-from fastpin.errors import CaseFileError, InputError
+from fastpin import CaseFileError, InputError, cracks, damage
+from fastpin.casefile import EXAMPLE, case_text, parse_case
 from fastpin.figures.style import caption
 from fastpin.model import CrackGrowth, FatigueAssessment, FatigueConstants, Laminate, Ply
 from fastpin.model.angles import angle_at
 from fastpin.model.crack import check_crack
 from fastpin.model.doubts import doubts
 from fastpin.model.laminate import ALONG_LOAD
-from fastpin.report import json_schema
-from fastpin.report.case import describe
+from fastpin.report import describe, json_schema
 from fastpin.report.summary import document
 from tests.support.strategies import laminates
 from tests.support.tiers import gate

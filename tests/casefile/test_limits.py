@@ -5,9 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from fastpin import casefile
+from fastpin import CaseFileError, InputError, casefile
 from fastpin.casefile.toml_text import MOST_BYTES, MOST_BYTES_OF_PLAN, MOST_FAULTS, MOST_PARTS, CaseText
-from fastpin.errors import CaseFileError, InputError
 from fastpin.model import About
 from fastpin.studies import read_outcomes, read_plan
 from tests.support.times import growth

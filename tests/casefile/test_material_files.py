@@ -7,14 +7,13 @@ from pathlib import Path
 import pytest
 
 import fastpin
-from fastpin.casefile import read_materials
-from fastpin.casefile.reader import EXAMPLE, parse_case
+from fastpin import CaseFileError, InputError
+from fastpin.casefile import EXAMPLE, parse_case, read_materials
 from fastpin.cracks import GrowthLaw, Nasgro, Walker
-from fastpin.errors import CaseFileError, InputError
 from fastpin.model import materials
 from fastpin.model.doubts import doubts
+from fastpin.studies import read_plan
 from fastpin.studies.identity import canonical
-from fastpin.studies.plan import read_plan
 from tests.support.faults import fault_of
 
 SHEET = """

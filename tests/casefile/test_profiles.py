@@ -7,12 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.casefile.reader import parse_case
-from fastpin.casefile.writer import case_text
-from fastpin.errors import CaseFileError
+from fastpin import CaseFileError, Problem
+from fastpin.casefile import case_text, parse_case
+from fastpin.model import Profile
 from fastpin.model.angles import BOTTOM, angle_at
-from fastpin.model.problem import Problem
-from fastpin.model.profile import Profile
 from fastpin.studies.identity import canonical
 from tests.support.case_texts import PRESSED
 from tests.support.faults import faults_of

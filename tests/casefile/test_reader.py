@@ -6,13 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.casefile.reader import EXAMPLE, builtin_case, parse_case, read_case
+from fastpin import MATERIALS, CaseFileError, InputError, LoadHistory, MaterialPair, SolveOptions, read_case
+from fastpin.casefile import EXAMPLE, builtin_case, parse_case
 from fastpin.casefile.toml_text import MOST_BYTES
-from fastpin.errors import CaseFileError, InputError
-from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.options import SolveOptions
+from fastpin.model import LOADS
 from tests.support.body_texts import HEAD
 from tests.support.faults import fault_of, faults_of
 

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fastpin import read_case
-from fastpin.errors import CaseFileError
+from fastpin import CaseFileError, read_case
 from tests.support.case_texts import PRESSED
 
 RIG = "Time [s];Force [kN];Shear [N]\n0,0;12,5;0\n0,1;12,5;-300\n;;\n"

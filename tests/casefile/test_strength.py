@@ -2,10 +2,9 @@
 
 import pytest
 
-from fastpin import casefile
-from fastpin.casefile.reader import EXAMPLE, parse_case
-from fastpin.errors import InputError
-from fastpin.model import MATERIALS, Case, StrengthAssessment
+from fastpin import MATERIALS, Case, InputError, casefile
+from fastpin.casefile import EXAMPLE, parse_case
+from fastpin.model import StrengthAssessment
 from tests.support.case_texts import LAMINATED as CASE
 from tests.support.faults import fault_of
 

@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.casefile.reader import EXAMPLE, parse_case
-from fastpin.casefile.writer import case_text
-from fastpin.errors import CaseFileError, InputError
+from fastpin import CaseFileError, InputError
+from fastpin.casefile import EXAMPLE, case_text, parse_case
+from fastpin.model import LOADS
 from fastpin.model.doubts import doubts
-from fastpin.model.loads import LOADS
 from fastpin.model.units import named_loads
-from fastpin.report.case import describe
-from fastpin.report.states import state_table
+from fastpin.report import describe, state_table
 from fastpin.report.summary import document
-from fastpin.studies.plan import Plan, parse_plan, read_plan
+from fastpin.studies import parse_plan, read_plan
+from fastpin.studies.plan import Plan
 from tests.support.commands import printed, said
 from tests.support.faults import fault_of
 from tests.support.samples import PAIR

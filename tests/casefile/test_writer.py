@@ -7,17 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin import casefile
-from fastpin.bodies import Bushing, Plate, Ring, Tube
-from fastpin.bodies.compliance import Compliance
-from fastpin.casefile.reader import parse_case
+from fastpin import MATERIALS, Case, InputError, LoadHistory, Material, MaterialPair, Problem, SolveOptions, casefile
+from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
+from fastpin.casefile import parse_case
 from fastpin.cracks import Walker
-from fastpin.errors import InputError
-from fastpin.model.case import About, Case
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
+from fastpin.model import About
 
 TITANIUM, ALUMINIUM = MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"]
 STEEL, SHEET = MATERIALS["steel"], MATERIALS["2024-T3"]

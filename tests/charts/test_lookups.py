@@ -7,12 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, Material, MaterialPair, Problem, bodies, solve
+from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, bodies, solve
 from fastpin.bodies.body import PinLoad
 from fastpin.charts import CHARTS, joint_values, lookup
 from fastpin.charts.groups import CYCLE, GROUPS
-from fastpin.errors import InputError
-from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Rotation
 from fastpin.published import peak_pressure
 from fastpin.verification import closed_forms

@@ -18,15 +18,13 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import figures, solver
-from fastpin.casefile.reader import EXAMPLE, builtin_case
+from fastpin import Interrupted, NoEquilibriumError, __version__, figures, solver
+from fastpin.casefile import EXAMPLE, builtin_case
 from fastpin.cli.main import main
 from fastpin.model.loads import LATER
 from fastpin.published import catalog
 from fastpin.runtime import jit, machine
 from fastpin.solver import arc, solving
-from fastpin.solver.errors import Interrupted, NoEquilibriumError
-from fastpin.version import __version__
 from tests.support.commands import printed, refusal, refused, said
 from tests.support.processes import finished, python
 from tests.support.samples import sample_result

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from fastpin import studies
-from fastpin.casefile.reader import EXAMPLE
-from fastpin.model.materials import MaterialPair
+from fastpin import MaterialPair, studies
+from fastpin.casefile import EXAMPLE
 from fastpin.report.convergence import COLUMNS
 from fastpin.studies import convergence
 from fastpin.studies.convergence import Convergence, StudyInterrupted

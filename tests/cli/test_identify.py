@@ -11,7 +11,7 @@ import pytest
 from fastpin import figures, studies
 from fastpin.report import identify as report
 from fastpin.report import json_schema
-from fastpin.studies.identification import FittedValue, Identified
+from fastpin.studies import FittedValue, Identified
 from fastpin.studies.measured_loop import measured_loop
 from tests.support.case_texts import IN_A_RIG
 from tests.support.commands import refused, said

@@ -6,9 +6,7 @@ from pathlib import Path
 import h5py
 import pytest
 
-from fastpin.casefile.reader import read_case
-from fastpin.solver.errors import Interrupted
-from fastpin.storage.recording import record
+from fastpin import Interrupted, read_case, record
 from tests.support.body_texts import HEAD
 from tests.support.commands import printed, refused, said
 from tests.support.interrupts import StopAt

@@ -11,13 +11,12 @@ from pathlib import Path
 import pytest
 
 import fastpin
-from fastpin.casefile.lug import LUG_EXAMPLE
-from fastpin.casefile.reader import EXAMPLE
+from fastpin.casefile import EXAMPLE, LUG_EXAMPLE
 from fastpin.cli.options import parser
 from fastpin.joints import JOINT_EXAMPLE
 from fastpin.storage.files import INDEX
+from fastpin.studies import read_plan
 from fastpin.studies.index import Index
-from fastpin.studies.plan import read_plan
 from tests.support.commands import refusal, refused, said
 from tests.support.files import contents
 

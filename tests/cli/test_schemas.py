@@ -8,11 +8,10 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from fastpin import verification
+from fastpin import InputError, verification
 from fastpin.casefile import EXAMPLE, LUG_EXAMPLE
 from fastpin.cli.main import main
 from fastpin.cli.options import SCHEMAS, parser
-from fastpin.errors import InputError
 from fastpin.report import json_schema
 from fastpin.report.schema import COMMANDS
 from fastpin.verification.rows import Check

@@ -6,12 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from fastpin import solve, wear
+from fastpin import InputError, Problem, solve, wear
 from fastpin.casefile import parse_case
-from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS
 from fastpin.model.angles import from_bottom
-from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.states import bush_line, seat_lines
 from tests.support.commands import printed, refused, said

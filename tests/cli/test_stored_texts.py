@@ -14,12 +14,11 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import storage
-from fastpin.bodies.compliance import Compliance
+from fastpin import Result, storage
+from fastpin.bodies import Compliance
 from fastpin.casefile import parse_case
 from fastpin.errors import printable
 from fastpin.figures.style import caption
-from fastpin.solver.result import Result
 from fastpin.storage import packed, store
 from fastpin.storage.files import INDEX
 from fastpin.studies import read_plan, sweep

@@ -9,11 +9,10 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import fastpin
+from fastpin import Interrupted
 from fastpin.assess import wear
-from fastpin.casefile import parse_case
-from fastpin.casefile.writer import case_text
+from fastpin.casefile import case_text, parse_case
 from fastpin.report import json_schema
-from fastpin.solver.errors import Interrupted
 from tests.support.commands import printed, refused, said
 from tests.support.live_pages import recorded
 

@@ -5,8 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from fastpin import damage
-from fastpin.errors import InputError
+from fastpin import InputError, damage
 from tests.support.refusals import refused
 
 ASTM = [-2, 1, -3, 5, -1, 3, -4, 4, -2]

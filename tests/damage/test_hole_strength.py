@@ -5,15 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import MATERIALS, InputError, MaterialPair, Points, Problem, solve
 from fastpin.damage import JointStrength, joint_strength, least_strength, ply_failure, ply_stresses
 from fastpin.damage.hole_strength import JOINT_MODES
-from fastpin.errors import InputError
-from fastpin.model.laminate import Laminate
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.points import Points
-from fastpin.model.problem import Problem
-from fastpin.model.strength import StrengthAssessment
-from fastpin.solver.solving import solve
+from fastpin.model import Laminate, StrengthAssessment
 from tests.support.laminates import TURNED
 from tests.support.once import solve_once
 

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import damage
+from fastpin import InputError, damage
 from fastpin.damage.hot_spots import edge_angles
-from fastpin.errors import InputError
 from fastpin.model import FatigueConstants
 from tests.support.refusals import refused
 

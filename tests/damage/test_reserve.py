@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import damage
+from fastpin import InputError, damage
 from fastpin.bodies import Bushing
 from fastpin.damage.assessed import _edge_count
 from fastpin.damage.counted import Spectrum
 from fastpin.damage.lives import cycles_on_curve, smith_watson_topper_curve
-from fastpin.errors import InputError
 from fastpin.model import FatigueAssessment
 from fastpin.model.doubts import doubts_given
 from tests.support.fatigue import ALUMINIUM as MATERIAL

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import damage
+from fastpin import InputError, damage
 from fastpin.damage import plane_damage, plane_search
 from fastpin.damage.counted import CountedMaterial, Spectrum
 from fastpin.damage.lives import curve_with_knee, fatemi_socie_curve, smith_watson_topper_curve
-from fastpin.errors import InputError
 from fastpin.model import FatigueAssessment, FatigueConstants
 from tests.support.fatigue import uniaxial
 from tests.support.refusals import refused

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import damage
+from fastpin import InputError, damage
 from fastpin.bodies import Bushing, Ring, Tube
+from fastpin.damage import smith_watson_topper_life
 from fastpin.damage.counted import CountedMaterial, Spectrum
 from fastpin.damage.histories import history_blocks
-from fastpin.damage.lives import smith_watson_topper_life
-from fastpin.errors import InputError
 from fastpin.model import FatigueConstants
 from tests.support.fatigue import ALUMINIUM as MATERIAL
 from tests.support.fatigue import PAIR, uniaxial

@@ -8,16 +8,15 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import damage
+from fastpin import CaseFileError, Material, damage
 from fastpin.assess.fatigue import Assessed, document, lines
-from fastpin.casefile.reader import parse_case
+from fastpin.casefile import parse_case
+from fastpin.damage import equivalent_stress, failure_probability, rainflow, tolerance_factor
 from fastpin.damage.counted import CountedMaterial, Spectrum
-from fastpin.damage.criteria import equivalent_stress
-from fastpin.damage.lives import cycles_on_curve, failure_probability, rainflow, stress_life_curve, tolerance_factor
-from fastpin.errors import CaseFileError
-from fastpin.model import FatigueAssessment, FatigueConstants, Material
+from fastpin.damage.lives import cycles_on_curve, stress_life_curve
+from fastpin.model import FatigueAssessment, FatigueConstants, stress_life_curves
 from fastpin.model.assessment import USUAL
-from fastpin.model.fatigue import KSI, stress_life_curves
+from fastpin.model.fatigue import KSI
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import value_of
 from tests.support.documents import page_text

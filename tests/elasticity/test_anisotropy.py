@@ -5,13 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import Grid, Material, MaterialPair, Problem
 from fastpin.bodies import Tube
 from fastpin.elasticity import operator
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
-from fastpin.model.grid import Grid
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
 from tests.support.laminates import RIGID, STEEL, TURNED, orthotropic
 from tests.support.tiers import gate
 

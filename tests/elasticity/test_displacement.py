@@ -5,13 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import Grid, Material, MaterialPair, Problem
 from fastpin.elasticity.drive import displacement_coupling
 from fastpin.elasticity.system import System
+from fastpin.model import LOADS
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, ROTATION, UX, UY, M, P, Q
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin.model.loads import ROTATION, UX, UY, M, P, Q
 from tests.support.potentials import KOLOSOV, RADIUS, Potentials, pin_body, pin_normal, pin_shear, plate
 
 PI = math.pi

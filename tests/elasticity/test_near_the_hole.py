@@ -10,8 +10,7 @@ from fastpin import Material, MaterialPair, Points, Problem, solve
 from fastpin.bodies import Compliance, Ring
 from fastpin.elasticity.stress import plate_stress
 from fastpin.elasticity.tractions import Tractions
-from fastpin.lugs.outline import Lug, Part
-from fastpin.lugs.plates import plate_compliance
+from fastpin.lugs import Lug, Part, plate_compliance
 from fastpin.states.margins import part_of
 from fastpin.states.yielding import von_mises_peak
 from tests.support.ring_compliance import held_ring

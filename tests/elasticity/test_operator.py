@@ -5,16 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.bodies import Ring, Tube
 from fastpin.elasticity import large, operator
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.operator import DenseOperator, ToeplitzOperator
 from fastpin.elasticity.system import System
 from fastpin.kernels import toeplitz
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
 from fastpin.solver import path, tableau
-from fastpin.solver.solving import solve
 from tests.support.checks.body_cases import ring_compliance
 from tests.support.kernels import python
 from tests.support.steps import as_with_many_nodes

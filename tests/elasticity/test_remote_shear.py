@@ -6,19 +6,15 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.casefile.reader import read_case
+from fastpin import Grid, Material, MaterialPair, Problem, plot_tractions, read_case, solve
 from fastpin.elasticity.system import System
-from fastpin.figures.tractions import plot_tractions
 from fastpin.kernels.status import OPEN
+from fastpin.model import LOADS
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, SXX, SXY, SYY
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin.model.loads import SXX, SXY, SYY
 from fastpin.report.case import load_columns
 from fastpin.report.summary import document
 from fastpin.solver.rest import hole_gap
-from fastpin.solver.solving import solve
 from fastpin.storage.layout import all_loads
 from tests.support.checks.integral_equations import residuals_away
 from tests.support.samples import JOINT

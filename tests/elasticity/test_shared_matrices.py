@@ -5,13 +5,10 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from fastpin import Grid, Material, Problem, solve
 from fastpin.elasticity import large
 from fastpin.elasticity.large import build_system
 from fastpin.elasticity.system import System
-from fastpin.model.grid import Grid
-from fastpin.model.materials import Material
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from tests.support.bodies import HOLDS
 from tests.support.programs import assert_same_bits
 

@@ -8,10 +8,9 @@ import mpmath
 import numpy as np
 import pytest
 
+from fastpin import Material, MaterialPair, Problem
 from fastpin.elasticity.stress import pin_stress, plate_stress
 from fastpin.elasticity.tractions import Tractions
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
 from tests.support.potentials import pin_body, pin_normal, pin_shear, plate
 
 UNLIKE = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2), "stress")

@@ -8,14 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import Material, MaterialPair, Problem
 from fastpin.bodies import Bushing, Plate, Ring, Tube, harmonics
 from fastpin.bodies.ring import HalfCosine
 from fastpin.elasticity.stress import disk_stress, hole_stress, pin_stress, plate_stress, traction_harmonics
 from fastpin.elasticity.terms import body_terms
 from fastpin.elasticity.tractions import Tractions
 from fastpin.model.loads import SXX, SXY, SYY
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
 from tests.support.checks.body_cases import ring_compliance
 
 UNLIKE = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2), "stress")

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 from matplotlib.patches import Circle, Polygon
 
-from fastpin.casefile import parse_case, read_case
+from fastpin import InputError, Problem, read_case
+from fastpin.casefile import parse_case
 from fastpin.cli.main import main
-from fastpin.errors import InputError
 from fastpin.figures import plot_gap, plot_sketch
 from fastpin.figures.sketch import GAP, LARGEST_GAP
 from fastpin.figures.style import caption
-from fastpin.model.problem import Problem
-from fastpin.model.profile import InitialGap, Profile
+from fastpin.model import InitialGap, Profile
 from tests.support.case_texts import PRESSED
 from tests.support.drawing import legend_words, plain
 from tests.support.samples import PAIR

@@ -7,18 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fastpin import MATERIALS, InputError, MaterialPair, Points, Problem, save, solve
 from fastpin.cli.main import main
 from fastpin.damage import first_ply_failure, joint_strength
-from fastpin.errors import InputError
 from fastpin.figures import plot_stiffness, plot_strength, plot_stress_field
-from fastpin.model.laminate import Laminate
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.points import Points
-from fastpin.model.problem import Problem
-from fastpin.model.strength import StrengthAssessment
+from fastpin.model import Laminate, StrengthAssessment
 from fastpin.report.stress import field_curves
-from fastpin.solver.solving import solve
-from fastpin.storage import save
 from tests.support.once import solve_once
 
 PLATE = Laminate.from_layup("[0_2/45/-45/90]s", "T300/914", axis=-0.5 * math.pi + 0.3)

@@ -8,14 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import fastpin
-from fastpin.errors import InputError
+from fastpin import Grid, InputError
 from fastpin.figures.scar import NEAR, damage_of, life_caption, scar_plot, wear_plot
 from fastpin.figures.sheet import Look
 from fastpin.figures.states import InMemory
 from fastpin.figures.style import MAX_NAMED
-from fastpin.model.grid import Grid
-from fastpin.model.profile import Profile
-from fastpin.wear_lives.wear_result import WearResult
+from fastpin.model import Profile
+from fastpin.wear_lives import WearResult
 from tests.support.drawing import legend_words, plain
 from tests.support.lives import CONSTANTS, JOINT, sample_life
 from tests.support.wear_cases import WEAR_CASES

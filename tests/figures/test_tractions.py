@@ -8,18 +8,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from fastpin import InputError, Problem, Result, plot_cycles, plot_tractions, solve
 from fastpin.bodies.bushing import STUCK
-from fastpin.errors import InputError
-from fastpin.figures.cycles import plot_cycles
-from fastpin.figures.sketch import plot_sketch
+from fastpin.figures import plot_hoop_stress, plot_sketch, plot_stick_slip
 from fastpin.figures.states import drawn_states
-from fastpin.figures.stick_slip import plot_stick_slip
-from fastpin.figures.stress import plot_hoop_stress
 from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, Drawing, caption, spread
-from fastpin.figures.tractions import plot_tractions, traction_curves
-from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
+from fastpin.figures.tractions import traction_curves
 from fastpin.states.cycles import Cycle
 from tests.support.common_sizes import bushed
 from tests.support.drawing import legend_words, plain

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fastpin import Material, MaterialPair
+from fastpin import Material, MaterialPair, SolveError
 from fastpin.joints import Joint, JointPin, JointPlate, JointState, solve_joint
 from fastpin.lugs.outline import rectangle
-from fastpin.solver import SolveError
 from tests.support.tiers import seeds
 
 MATERIALS = (Material(72e9, 0.33), Material(210e9, 0.30), Material(110e9, 0.31))

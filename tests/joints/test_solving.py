@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import Grid, InputError, Material, MaterialPair, Problem
+from fastpin import Grid, InputError, Interrupted, Material, MaterialPair, Problem, SolveError
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, solve_joint, tate_rosenfeld
 from fastpin.lugs.outline import rectangle
+from fastpin.model import LOADS
 from fastpin.model.angles import BOTTOM
-from fastpin.model.loads import LOADS
-from fastpin.solver import Interrupted, SolveError
 
 ALUMINIUM, STEEL = Material(72e9, 0.33), Material(210e9, 0.30)
 FORCE = 1e6

@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem
 from fastpin.elasticity.interfaces import JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels import equations
 from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.equations import MOST_UNKNOWNS
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
-from fastpin.model.problem import Problem
+from fastpin.model import LOADS
 from fastpin.solver import configuration
 from fastpin.solver.configuration import solve_statuses, solve_unknowns
 from fastpin.solver.unknowns import DenseUnknowns

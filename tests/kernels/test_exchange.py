@@ -8,21 +8,20 @@ import numba
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import CHUNK, WIDTH
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, Q
-from fastpin.model.problem import Problem
+from fastpin.model import LOADS
+from fastpin.model.loads import Q
 from fastpin.solver import unknowns as solver_unknowns
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import solve_statuses, worst_residual
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
 from fastpin.solver.slip_tally import SlipTally
-from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
 from tests.support import processes

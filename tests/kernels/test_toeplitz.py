@@ -4,14 +4,11 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from fastpin import Grid, Material, MaterialPair, Problem, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels import toeplitz
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
 from fastpin.solver import unknowns
-from fastpin.solver.solving import solve
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 from tests.support.steps import as_with_many_nodes
 from tests.support.tiers import gate

@@ -8,14 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.bodies import Bushing, Plate, Ring, Tube
-from fastpin.bodies.compliance import Compliance
-from fastpin.errors import InputError
+from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, SolveOptions
+from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
 from fastpin.model.acting import check_arc, check_loads
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
 from tests.support.bodies import soft_plate
 from tests.support.refusals import refused
 

@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import LoadHistory
-from fastpin.errors import CaseFileError
-from fastpin.model.loads import LOADS
-from fastpin.model.profile import Profile
+from fastpin import CaseFileError, LoadHistory
+from fastpin.model import LOADS, Profile
 from tests.support.refusals import refused
 
 RNG = np.random.default_rng(7)

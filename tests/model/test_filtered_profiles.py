@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.errors import CaseFileError, InputError
+from fastpin import CaseFileError, InputError, SolveOptions
 from fastpin.model import InitialGap, Profile
 from fastpin.model.doubts import doubts
-from fastpin.model.options import SolveOptions
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 721)[:-1]
 

@@ -7,11 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.bodies.compliance import Compliance
-from fastpin.casefile import parse_case, read_case, read_lug, read_materials
+from fastpin import InputError, LoadHistory, read_case
+from fastpin.bodies import Compliance
+from fastpin.casefile import parse_case, read_lug, read_materials
 from fastpin.cli.main import main
-from fastpin.errors import InputError
-from fastpin.model.history import LoadHistory
 from fastpin.studies import parse_plan, read_outcomes, read_plan, sweep
 from fastpin.studies.index import Index
 from tests.support.case_texts import PRESSED

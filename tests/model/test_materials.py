@@ -6,8 +6,7 @@ import pickle
 import pytest
 
 import fastpin
-from fastpin import MATERIALS
-from fastpin.errors import InputError
+from fastpin import MATERIALS, InputError
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.errors import InputError
-from fastpin.model.profile import Profile
-from fastpin.model.wear import Wear
+from fastpin import InputError
+from fastpin.model import Profile, Wear
 from tests.support.refusals import refused
 
 THETA = np.linspace(-np.pi, np.pi, 41)

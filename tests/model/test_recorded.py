@@ -5,11 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.casefile.reader import parse_case
-from fastpin.errors import CaseFileError, InputError
-from fastpin.model.history import LoadHistory
+from fastpin import CaseFileError, InputError, LoadHistory, solve
+from fastpin.casefile import parse_case
 from fastpin.model.recorded import turning_corners, with_last_cycle
-from fastpin.solver.solving import solve
 from tests.support.case_texts import IN_A_RIG
 from tests.support.loops import joint
 

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin import MATERIALS, MaterialPair, State
 from fastpin.model.angles import BOTTOM, angle_at, from_bottom
-from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.ties import TIE, top, top_angle, top_angles
 from fastpin.reading.peaks import peak_slips
-from fastpin.states.state import State
 from fastpin.states.yielding import von_mises_peak
 
 

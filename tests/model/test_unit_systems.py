@@ -7,12 +7,10 @@ from dataclasses import fields
 
 import pytest
 
-from fastpin import Material, MaterialPair, Problem
-from fastpin.casefile import case_text, parse_case
-from fastpin.casefile.lug import LUG_EXAMPLE, parse_lug
-from fastpin.casefile.reader import KEYS, builtin_case
-from fastpin.errors import CaseFileError, InputError
-from fastpin.model.fatigue import FatigueConstants
+from fastpin import CaseFileError, InputError, Material, MaterialPair, Problem
+from fastpin.casefile import LUG_EXAMPLE, builtin_case, case_text, parse_case, parse_lug
+from fastpin.casefile.reader import KEYS
+from fastpin.model import FatigueConstants
 from fastpin.model.growth import LAWS
 from fastpin.model.keys import CASE, FATIGUE, LAW, PLY, converted, kind_of
 from fastpin.model.ply import PLY_KEYS

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.errors import InputError
+from fastpin import InputError
+from fastpin.model import Profile, Wear
 from fastpin.model.doubts import wear_doubts
-from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import Zone
-from fastpin.model.wear import Wear
 from tests.support.refusals import refused
 
 THETA = np.linspace(-3.0, 0.0, 7)

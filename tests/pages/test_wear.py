@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin import InputError, Interrupted
 from fastpin.assess.outputs import MAX_ROWS
-from fastpin.errors import InputError
-from fastpin.model.case import About
+from fastpin.model import About
 from fastpin.model.wear import cycles_text
 from fastpin.pages import source, write_report
 from fastpin.pages.sections import provenance
 from fastpin.pages.wear import WEAR_SECTIONS, damage, numbers, overview
-from fastpin.solver.errors import Interrupted
-from fastpin.wear_lives.wear_result import WearResult, WornCycle
+from fastpin.wear_lives import WearResult, WornCycle
 from tests.support.html import Page, words_of
 from tests.support.lives import JOINT, sample_life
 from tests.support.tiers import gate

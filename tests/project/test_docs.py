@@ -9,10 +9,9 @@ from pathlib import Path
 from docs.beyond.figures import FIGURES
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
 from fastpin.published import catalog
-from fastpin.studies import sweep
+from fastpin.studies import parse_plan, sweep
 from fastpin.studies.outcome_tables import KEYS
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
-from fastpin.studies.plan import parse_plan
 from fastpin.studies.run_end import KEY_FIGURES
 from scripts.inline import Inline
 from tests.support.documents import page_text, statements, texts

@@ -7,10 +7,9 @@ import pytest
 
 from docs.beyond import memory, sliding_onset
 from docs.beyond.figures import FIGURES
+from fastpin import Problem, solve
 from fastpin.assess.outputs import Curve
-from fastpin.model.problem import Problem
 from fastpin.published import tractions
-from fastpin.solver.solving import solve
 from tests.support.checks.sliding import solve_sliding
 from tests.support.tiers import for_gate
 

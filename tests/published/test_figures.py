@@ -10,16 +10,13 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from fastpin import Grid, InputError, Problem, solve
 from fastpin.assess.outputs import Curve, csv_cell, write_csv
-from fastpin.errors import InputError
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
 from fastpin.published import catalog, fretting, remote_stress, sweep, tractions
 from fastpin.published import tractions as curves_of_figures
 from fastpin.published.records import steps
 from fastpin.published.tractions import traction_curve
-from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from tests.support.samples import sample_result, with_values
 from tests.support.tiers import some_gate

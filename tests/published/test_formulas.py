@@ -7,15 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin import benchmarks, published
+from fastpin import MATERIALS, InputError, Material, MaterialPair, Problem, State, benchmarks, published, solve
 from fastpin.bodies.body import PinLoad
-from fastpin.errors import InputError
-from fastpin.model.materials import MATERIALS, Material, MaterialPair, Plane
-from fastpin.model.problem import Problem
+from fastpin.model.materials import Plane
 from fastpin.published import half_angle, load_term, peak_pressure
 from fastpin.published.handbook_formulas import SPREAD
-from fastpin.solver.solving import solve
-from fastpin.states.state import State
 from fastpin.verification import closed_forms
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "handbook-formulas.md").read_text(encoding="utf-8")

@@ -9,10 +9,8 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import Material, MaterialPair, Problem, solve
 from fastpin.kernels.status import STICK
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from tests.support.paper_cases import (
     BOTTOM,

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
+from fastpin import Problem, solve
 from fastpin.verification import closed_forms
 from fastpin.verification.comparisons import cattaneo_mindlin_differences
 

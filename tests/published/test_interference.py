@@ -7,10 +7,9 @@ import pytest
 
 from docs.beyond import interference, regimes
 from docs.beyond.figures import FIGURES
+from fastpin import Grid, solve
 from fastpin.assess.outputs import Curve
-from fastpin.model.grid import Grid
 from fastpin.published import remote_stress
-from fastpin.solver.solving import solve
 from fastpin.verification.interference import release_stress
 from tests.support.tiers import for_gate
 

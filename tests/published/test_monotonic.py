@@ -9,9 +9,8 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import Problem, solve
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from tests.support.paper_cases import (
     BOTTOM,
     EVERY_PAIR,

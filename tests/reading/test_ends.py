@@ -6,11 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.model.materials import MaterialPair
-from fastpin.model.problem import Problem
+from fastpin import MaterialPair, Problem, solve
 from fastpin.reading.half_line import End, half_line
 from fastpin.reading.zones import end_angle
-from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from tests.support.half_line import columns
 

@@ -5,14 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import InputError, Material, MaterialPair, Problem, State, solve
 from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
-from fastpin.errors import InputError
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.reading.joint import BushFit
-from fastpin.solver.solving import solve
-from fastpin.states.quantities import QUANTITIES
-from fastpin.states.state import State
+from fastpin.reading import BushFit
+from fastpin.states import QUANTITIES
 from tests.support.refusals import refused
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))

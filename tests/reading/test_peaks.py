@@ -5,12 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
+from fastpin import Grid, Problem, solve
 from fastpin.reading import peaks
 from fastpin.reading.cusps import ShearNodes
 from fastpin.reading.exponents import isotropic_coupling
-from fastpin.solver.solving import solve
 
 GRID = Grid.arc(-1.0, 1.0, 81)
 X = np.arange(-40.0, 41.0)

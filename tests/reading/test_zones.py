@@ -7,13 +7,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
 from fastpin.reading import peaks, zones
 from fastpin.reading.cusps import ShearNodes
 from fastpin.reading.exponents import isotropic_coupling
-from fastpin.solver.solving import solve
 
 SAMPLED = 0.2
 """Largest error of an edge, in node distances, that is read from samples of a root.

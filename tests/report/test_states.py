@@ -5,13 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import MATERIALS, Material, MaterialPair, Problem, State, solve
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import interval_from_bottom
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.report.states import hoop_line, state_table
-from fastpin.solver.solving import solve
-from fastpin.states.state import State
+from fastpin.report import state_table
+from fastpin.report.states import hoop_line
 from tests.support.samples import PAIR, sample_result, with_values
 
 

@@ -6,12 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
-from fastpin.figures.sweep import plot_sweep
+from fastpin import InputError, Result
+from fastpin.figures import plot_sweep
 from fastpin.report.sweep import chart, check_axes, restricted, text, where_words, write_csv
-from fastpin.solver.result import Result
-from fastpin.studies import sweep
-from fastpin.studies.plan import Plan, parse_plan
+from fastpin.studies import parse_plan, sweep
+from fastpin.studies.plan import Plan
 from fastpin.studies.variation import field_words
 from tests.support.plans import FRICTION, MAP, made_up_rows
 

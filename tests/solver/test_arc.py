@@ -5,12 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS, REMOTE
-from fastpin.model.problem import Problem
-from fastpin.solver import arc
-from fastpin.solver.errors import ArcError, ResolutionError
+from fastpin import Grid, LoadHistory, Problem
+from fastpin.model import LOADS
+from fastpin.model.loads import REMOTE
+from fastpin.solver import ArcError, arc
+from fastpin.solver.errors import ResolutionError
 from fastpin.solver.run import Run
 from fastpin.solver.task import reference_force
 from tests.support.slip_cases import LIKE

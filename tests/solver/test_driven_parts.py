@@ -5,13 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.elasticity import large
 from fastpin.elasticity.large import LargeSystem, build_system
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
-from fastpin.model.problem import Problem
+from fastpin.model import LOADS
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import worst_residual
 from fastpin.solver.errors import ResolutionError
@@ -19,7 +18,6 @@ from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep
 from fastpin.solver.settling import FiniteStep, settle
-from fastpin.solver.solving import solve
 from tests.support.programs import difference
 from tests.support.tiers import gate
 

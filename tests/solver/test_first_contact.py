@@ -6,16 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fastpin import MATERIALS, Grid, Material, MaterialPair, NoEquilibriumError, Problem, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, SXX, UY, M, P, Q
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver import first_contact, path
+from fastpin.model import LOADS
+from fastpin.model.loads import SXX, UY, M, P, Q
+from fastpin.solver import ArcError, first_contact, path
 from fastpin.solver.assembly import unloaded_configuration
-from fastpin.solver.errors import ArcError, NoEquilibriumError
-from fastpin.solver.solving import solve
 from tests.support.steps import step_by_step
 from tests.support.tiers import seeds
 from tests.survey import metamorphic

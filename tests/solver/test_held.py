@@ -6,21 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, SolveError, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels import conditions, exchange
 from fastpin.kernels import held as held_kernels
 from fastpin.kernels.arrays import Contact, RightSides
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
-from fastpin.model.problem import Problem
+from fastpin.model import LOADS
 from fastpin.solver import held
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import solve_statuses
-from fastpin.solver.errors import SolveError
 from fastpin.solver.held import HeldColumns, HeldContacts, held_table
 from fastpin.solver.slip_tally import SlipTally
-from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns
 from tests.support.bodies import HOLDS

@@ -5,18 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import STICK
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, P, Q
-from fastpin.model.problem import Problem
+from fastpin.model import LOADS
+from fastpin.model.loads import P, Q
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import worst_residual
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import _hold_one, implicit_step
 from fastpin.solver.path import PathStep
-from fastpin.solver.solving import solve
 
 ARC = (-0.5 * np.pi - 1.25, -0.5 * np.pi + 1.25)
 

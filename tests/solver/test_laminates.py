@@ -5,15 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import MATERIALS, Grid, InputError, Material, MaterialPair, Points, Problem, solve
 from fastpin.bodies import Bushing, Plate, Ring
-from fastpin.errors import InputError
 from fastpin.model.angles import BOTTOM
 from fastpin.model.doubts import doubts
-from fastpin.model.grid import Grid
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.points import Points
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from fastpin.verification.interference import uniform_pressure
 from tests.support.checks.laminate_rows import laminate
 from tests.support.checks.sliding import solve_sliding

@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin import LoadHistory, Material, MaterialPair, Problem, solve
+from fastpin import LoadHistory, Material, MaterialPair, Problem, SolveError, solve
 from fastpin.bodies import Tube
-from fastpin.model.laminate import Laminate
-from fastpin.model.loads import LOADS, P, Q
+from fastpin.model import LOADS, Laminate
+from fastpin.model.loads import P, Q
 from fastpin.model.options import ALL_ROUND
-from fastpin.solver.errors import SolveError
 from fastpin.solver.step import pieces
 from tests.support.tiers import seeds
 from tests.survey.histories import generate

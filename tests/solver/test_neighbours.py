@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
+from fastpin import Grid, Material, MaterialPair, Problem
 from fastpin.elasticity.system import System
-from fastpin.model.grid import Grid
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
 from fastpin.solver.unknowns import Neighbours, TurnedNeighbours
 from tests.support.laminates import RIGID, STEEL, TURNED
 

@@ -8,14 +8,10 @@ import h5py
 import numpy as np
 import pytest
 
+from fastpin import Material, MaterialPair, Problem, Result, load, save, solve
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
 from fastpin.reading.marks import Marks
 from fastpin.reading.old_borders import BITS, OldBorder, is_ambiguous, old_borders, present_borders
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
-from fastpin.storage.store import load, save
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 PROBLEM = Problem.from_load_parameter(LIKE, 2.0, 0.7, "centre", "fixed")

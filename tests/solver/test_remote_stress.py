@@ -9,14 +9,11 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import Grid, Material, MaterialPair, Problem, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin.model import LOADS
 from fastpin.solver.configuration import solve_statuses
-from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from tests.support.checks.integral_equations import residuals_away
 

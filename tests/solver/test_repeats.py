@@ -6,15 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin import MATERIALS, LoadHistory, MaterialPair, NoEquilibriumError, Problem, Result, solve
 from fastpin.solver import repeats
 from fastpin.solver.configuration import Configuration
-from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.repeats import MOST_KEPT, Repeats
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
 from fastpin.states.cycles import consecutive_cycles, periodic_from
 from tests.support.programs import CYCLE, PROGRAMS, RANDOM, P, assert_same, assert_same_bits, grid_of, known, q
 from tests.support.tiers import some_gate

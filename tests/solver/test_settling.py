@@ -6,22 +6,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import ConvergenceError, Grid, Material, MaterialPair, Problem, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels import complementarity, conditions, exchange
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, P
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin.model import LOADS
+from fastpin.model.loads import P
 from fastpin.solver import path, settling
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import Correction, solve_statuses, worst_residual
-from fastpin.solver.errors import ConvergenceError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep
 from fastpin.solver.settling import FiniteStep, settle
-from fastpin.solver.solving import solve
 from tests.support.steps import step_by_step
 from tests.support.tiers import some_gate
 

@@ -10,11 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fastpin import Grid, State, solve
 from fastpin.elasticity import large
 from fastpin.kernels.status import OPEN
-from fastpin.model.grid import Grid
-from fastpin.solver.solving import solve
-from fastpin.states.state import State
 from tests.support.programs import EXTREMES, RANDOM, SLIP, P, q
 from tests.support.slip_cases import CASES, LIKE, UNLIKE, assert_contains, solved, unitless
 

@@ -7,12 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.model.history import LoadHistory
-from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
-from fastpin.storage.recording import record
-from fastpin.storage.store import load, save
+from fastpin import LoadHistory, Problem, Result, load, record, save, solve
 from tests.support.programs import EXTREMES, FIELDS, NUMBERS, PROGRAMS, SLIP, P, assert_same, grid_of, known, q
 from tests.support.slip_cases import CASES, LIKE, UNLIKE, WAYS, assert_contains, random_states, solved, unitless
 from tests.support.tiers import seeds, some_gate

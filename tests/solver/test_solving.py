@@ -4,11 +4,7 @@ import math
 
 import pytest
 
-from fastpin.errors import FastpinError, InputError
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
+from fastpin import MATERIALS, FastpinError, InputError, LoadHistory, Material, MaterialPair, Problem, solve
 
 STEEL = Material(210e9, 0.3)
 PAIR = MaterialPair(STEEL, STEEL)

@@ -4,10 +4,8 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import fastpin
-from fastpin.model.grid import Grid
-from fastpin.model.options import SolveOptions
-from fastpin.solver import task
-from fastpin.solver.errors import ArcError, ConvergenceError, SolveError
+from fastpin import ConvergenceError, Grid, SolveError, SolveOptions
+from fastpin.solver import ArcError, task
 from fastpin.solver.task import Task, Unfit, first_followed, one_blas_thread, wider_arcs
 
 STEEL = fastpin.MATERIALS["steel"]

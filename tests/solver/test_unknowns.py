@@ -7,12 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
 from fastpin.solver import path, unknowns
-from fastpin.solver.solving import solve
 from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
 from tests.support.steps import as_with_many_nodes

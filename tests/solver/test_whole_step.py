@@ -3,15 +3,11 @@
 import numpy as np
 import pytest
 
+from fastpin import Grid, LoadHistory, Problem, SolveOptions, solve
 from fastpin.elasticity.large import latest_system
 from fastpin.kernels import exchange
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.solver import arc, held
-from fastpin.solver.solving import solve
 from tests.support.programs import assert_same, difference
 from tests.support.steps import step_by_step
 

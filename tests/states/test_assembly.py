@@ -7,16 +7,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from fastpin import Material, MaterialPair, Points, Problem, State, solve
 from fastpin.bodies import Bushing, Ring, Tube
-from fastpin.model.laminate import Laminate
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.points import Points, elastic_bodies
-from fastpin.model.problem import Problem
-from fastpin.model.profile import Profile
+from fastpin.model import Laminate, Profile
+from fastpin.model.points import elastic_bodies
 from fastpin.report.states import hoop_line
-from fastpin.solver.solving import solve
-from fastpin.states.quantities import QUANTITIES, values
-from fastpin.states.state import State
+from fastpin.states import QUANTITIES
+from fastpin.states.quantities import values
 
 STEEL, BRONZE, ALUMINIUM = Material(210e9, 0.3), Material(110e9, 0.34), Material(70e9, 0.33)
 PAIR = MaterialPair(STEEL, ALUMINIUM, "stress")

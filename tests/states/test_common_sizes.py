@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from fastpin import Points, Problem
+from fastpin import InputError, Points, Problem
 from fastpin.bodies import Ring
-from fastpin.errors import InputError
 from fastpin.model.checks import is_above, is_between
 from fastpin.model.crack import MOST_OF_WALL, check_length
 from fastpin.states.yielding import circles

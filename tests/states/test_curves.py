@@ -2,10 +2,8 @@
 
 import numpy as np
 
+from fastpin import MaterialPair, Problem, solve
 from fastpin.elasticity.tractions import RefinedTractions, Tractions
-from fastpin.model.materials import MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from fastpin.states.curves import traction_patches, tractions_at
 
 

@@ -9,20 +9,14 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import storage
+from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, Result, State, storage
 from fastpin.bodies import Bushing, Ring
 from fastpin.elasticity.stress import plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
-from fastpin.errors import InputError
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
 from fastpin.model.ties import TIE
-from fastpin.solver.result import Result
 from fastpin.states import extremes, reading_bounds
 from fastpin.states.extremes import MARKS, READINGS, KeptStates, marked_extremes, marked_places
 from fastpin.states.reading_bounds import NUMBERS
-from fastpin.states.state import State
 from fastpin.states.stress_map import StressMap
 from tests.support.samples import sample_result
 from tests.support.tiers import gate, seeds, some_gate

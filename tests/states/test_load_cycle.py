@@ -7,16 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
+from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, Result, load, record, solve
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
-from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
-from fastpin.storage.recording import record
-from fastpin.storage.store import load, places_between
+from fastpin.states import LoadCycle, NodeBehaviour
+from fastpin.storage import places_between
 from tests.support.joints import joint
 
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])

@@ -5,13 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
-from fastpin.model.grid import Grid
-from fastpin.model.materials import MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
+from fastpin import Grid, InputError, MaterialPair, Problem, State, solve
 from fastpin.states.curves import traction_patches, tractions_at
-from fastpin.states.state import State
 from fastpin.verification import closed_forms
 
 BOTTOM = -0.5 * math.pi

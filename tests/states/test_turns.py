@@ -7,22 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.casefile.reader import EXAMPLE, parse_case
-from fastpin.figures.tractions import plot_tractions
+from fastpin import Case, Grid, LoadHistory, MaterialPair, Problem, SolveOptions, State, plot_tractions, solve
+from fastpin.casefile import EXAMPLE, parse_case
 from fastpin.kernels.status import STICK
 from fastpin.model.angles import BOTTOM
-from fastpin.model.case import Case
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MaterialPair
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.reading import zones
-from fastpin.report.states import state_table
+from fastpin.report import state_table
 from fastpin.report.summary import document
-from fastpin.solver.solving import solve
 from fastpin.states.quantities import in_degrees, values
-from fastpin.states.state import State
 from tests.support.checks.integral_equations import residuals_away
 from tests.support.checks.sliding import solve_sliding
 

@@ -6,16 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin.model.case import Case
-from fastpin.model.history import LoadHistory
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
+from fastpin import Case, LoadHistory, Problem, Result, SolveOptions, solve
 from fastpin.report.states import quantity_column
 from fastpin.report.summary import document
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
+from fastpin.states import QUANTITIES
 from fastpin.states.error_bars import known_bar
-from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import bar_of, pickled, value_of, values_in_worker
 from tests.support.samples import PAIR

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.model.materials import MaterialPair
-from fastpin.model.problem import Problem
+from fastpin import MaterialPair, Problem
 
 
 @pytest.fixture

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
+from fastpin import Problem, solve
 from fastpin.storage import store
 from tests.support.processes import finished, python
 

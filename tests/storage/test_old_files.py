@@ -13,8 +13,7 @@ from typing import Any
 import pytest
 
 import fastpin
-from fastpin.casefile.reader import read_case
-from fastpin.storage.store import load
+from fastpin import load, read_case
 from fastpin.studies import identity, sweep
 from tests.support.commands import printed
 

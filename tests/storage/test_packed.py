@@ -10,12 +10,8 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import storage
+from fastpin import MATERIALS, InputError, MaterialPair, Problem, Result, storage
 from fastpin.bodies import Bushing, Ring, Tube
-from fastpin.errors import InputError
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
 from fastpin.states.cycles import CYCLE_KINDS
 from fastpin.storage import packed, store
 from fastpin.storage.files import INDEX

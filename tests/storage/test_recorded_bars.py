@@ -4,11 +4,8 @@ import h5py
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
-from fastpin.solver.errors import Interrupted, NoEquilibriumError
-from fastpin.solver.solving import solve
-from fastpin.storage import recording, store, writer
-from fastpin.storage.recording import lacks_error_bars, record, resume, stored_case
+from fastpin import InputError, Interrupted, NoEquilibriumError, record, resume, solve
+from fastpin.storage import lacks_error_bars, recording, store, stored_case, writer
 from fastpin.storage.writer import coarse_of
 from tests.support.commands import printed, said
 from tests.support.programs import P, assert_same, q

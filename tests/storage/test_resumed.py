@@ -8,11 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.errors import Interrupted
-from fastpin.storage.recording import record, resume
+from fastpin import MATERIALS, Interrupted, LoadHistory, MaterialPair, Problem, record, resume
 from tests.support.interrupts import StopAt
 
 MAY_DIFFER = re.compile(r"cycles/solved|restart/[^/]+/met|(solver|restart/[^/]+)/statistics@\w+|@run|@created")

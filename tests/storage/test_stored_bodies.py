@@ -7,14 +7,10 @@ import h5py
 import numpy as np
 import pytest
 
-from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
-from fastpin.bodies.compliance import Compliance
+from fastpin import MATERIALS, InputError, Material, MaterialPair, Problem, load, save
+from fastpin.bodies import Bushing, Compliance, Disk, Plate, Ring, Tube
 from fastpin.cracks import Nasgro
-from fastpin.errors import InputError
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.storage.export import to_xarray
-from fastpin.storage.store import load, save
+from fastpin.storage import to_xarray
 from tests.support.files import replaced
 from tests.support.samples import PAIR, sample_result
 

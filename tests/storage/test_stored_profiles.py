@@ -8,16 +8,13 @@ import h5py
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
-from fastpin.model.history import LoadHistory
-from fastpin.model.problem import Problem
-from fastpin.model.profile import InitialGap, Profile
-from fastpin.report.schema import json_schema
+from fastpin import InputError, LoadHistory, Problem, load, record, save
+from fastpin.model import InitialGap, Profile
+from fastpin.report import json_schema
 from fastpin.report.summary import document
-from fastpin.storage import packed
+from fastpin.storage import packed, stored_case
 from fastpin.storage.layout import FORMAT_VERSION, WITH_PROFILES
-from fastpin.storage.recording import record, stored_case
-from fastpin.storage.store import load, pack, save
+from fastpin.storage.store import pack
 from fastpin.studies.identity import canonical, canonical_json
 from tests.support.files import replaced
 from tests.support.samples import PAIR, sample_result

@@ -8,15 +8,9 @@ import h5py
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
-from fastpin.model.problem import Problem
-from fastpin.solver.errors import Interrupted
-from fastpin.solver.solving import solve
-from fastpin.storage import writer
-from fastpin.storage.export import to_xarray
+from fastpin import InputError, Interrupted, Problem, load, record, resume, solve
+from fastpin.storage import places_between, to_xarray, writer
 from fastpin.storage.layout import SLIP_FIELDS
-from fastpin.storage.recording import record, resume
-from fastpin.storage.store import load, places_between
 from tests.support.files import replaced, written
 from tests.support.interrupts import StopAt, record_in_parts
 from tests.support.programs import PROGRAMS, P, assert_same, known, q

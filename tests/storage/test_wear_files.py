@@ -11,14 +11,13 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.errors import InputError
-from fastpin.model.assessment import FatigueAssessment
-from fastpin.solver.errors import Interrupted, ResolutionError
-from fastpin.storage import wear_files, writer
+from fastpin import InputError, Interrupted
+from fastpin.model import FatigueAssessment
+from fastpin.solver.errors import ResolutionError
+from fastpin.storage import stored_case, wear_files, writer
 from fastpin.storage.journal import JournaledFile
-from fastpin.storage.recording import stored_case
+from fastpin.wear_lives import WearResult
 from fastpin.wear_lives.fat_cycles import FatCycles, Worn
-from fastpin.wear_lives.wear_result import WearResult
 from tests.support.interrupts import StopAt
 from tests.support.processes import finished, python
 from tests.support.tiers import gate

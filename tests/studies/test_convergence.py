@@ -6,17 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MaterialPair
-from fastpin.model.problem import Problem
+from fastpin import Grid, InputError, LoadHistory, MaterialPair, Problem, Result, converge, solve
 from fastpin.report.convergence import reported_series
-from fastpin.solver.errors import ArcError
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
+from fastpin.solver import ArcError
 from fastpin.studies import convergence
-from fastpin.studies.convergence import Convergence, QuantitySeries, StudyInterrupted, StudyLostError, converge
+from fastpin.studies.convergence import Convergence, QuantitySeries, StudyInterrupted, StudyLostError
 from fastpin.verification import closed_forms
 from tests.support.studies import CORNERS, GRIDS, small_problem, small_study
 from tests.support.tiers import for_gate

@@ -6,10 +6,9 @@ from pathlib import Path
 import pytest
 
 import fastpin
-from fastpin import cracks, damage
+from fastpin import CaseFileError, cracks, damage
 from fastpin.cli.main import main
 from fastpin.cracks import CrackFate
-from fastpin.errors import CaseFileError
 from fastpin.studies import read_plan, sweep
 from tests.support.case_texts import IN_CYCLES
 from tests.support.faults import fault_of

@@ -11,15 +11,13 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.errors import CaseFileError
+from fastpin import CaseFileError, Result, converge
 from fastpin.model import FatigueConstants
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units
-from fastpin.solver.result import Result
-from fastpin.studies import converge
+from fastpin.studies import parse_plan
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, OutcomeValue, StudyOutcome, value_of
-from fastpin.studies.plan import parse_plan
 from tests.support import fatigue
 from tests.support.case_texts import FATIGUED
 from tests.support.commands import printed, said

@@ -4,14 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.casefile.reader import parse_case
-from fastpin.errors import CaseFileError
+from fastpin import CaseFileError
+from fastpin.casefile import parse_case
 from fastpin.model import Laminate
 from fastpin.model.angles import angle_at
 from fastpin.model.keys import kind_of
+from fastpin.studies import parse_plan, parse_tolerances
 from fastpin.studies.identity import canonical, canonical_json, run_id
-from fastpin.studies.plan import parse_plan
-from fastpin.studies.tolerances import parse_tolerances
 from fastpin.studies.variation import field_words
 
 HEAD = '[pin]\nmaterial = "steel"\n[plate]\n'

@@ -5,15 +5,13 @@ import json
 import pytest
 
 import fastpin
-from fastpin import cracks, damage
+from fastpin import CaseFileError, cracks, damage
 from fastpin.assess.fatigue import find
-from fastpin.errors import CaseFileError
 from fastpin.report import summary
 from fastpin.storage import stored_case
 from fastpin.storage.held import Held
-from fastpin.studies import read_plan, read_tolerances, sweep
+from fastpin.studies import parse_plan, read_plan, read_tolerances, sweep
 from fastpin.studies.outcomes import value_of
-from fastpin.studies.plan import parse_plan
 from tests.support.commands import printed
 from tests.support.faults import fault_of
 

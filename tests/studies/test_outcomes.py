@@ -10,18 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fastpin import CaseFileError, InputError, MaterialPair, Result
 from fastpin.assess.outputs import Output
-from fastpin.errors import CaseFileError, InputError
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import from_bottom
-from fastpin.model.materials import MaterialPair
 from fastpin.model.units import Unit
-from fastpin.solver.result import Result
-from fastpin.states.quantities import QUANTITIES
-from fastpin.studies import outcomes, read_outcomes, sweep
+from fastpin.states import QUANTITIES
+from fastpin.studies import outcomes, parse_plan, read_outcomes, sweep
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, check_loadable, pickled, value_of, values_in_worker
-from fastpin.studies.plan import parse_plan
 from fastpin.studies.run_end import RUN_COLUMNS
 from tests.support.faults import fault_of, faults_of
 from tests.support.outcomes import FILE, TABLE, last_work, solved, value

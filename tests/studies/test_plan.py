@@ -7,14 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.casefile import reader
-from fastpin.casefile.reader import EXAMPLE, builtin_case, parse_case
-from fastpin.errors import CaseFileError, InputError
+from fastpin import CaseFileError, InputError
+from fastpin.casefile import EXAMPLE, builtin_case, parse_case, reader
+from fastpin.model import LOADS
 from fastpin.model.checks import as_toml
-from fastpin.model.loads import LOADS
-from fastpin.studies import plan
+from fastpin.studies import parse_plan, plan, read_plan
 from fastpin.studies.identity import canonical, run_id
-from fastpin.studies.plan import parse_plan, read_plan
 from tests.support.bodies import soft_plate
 from tests.support.body_texts import HEAD
 from tests.support.processes import finished, python

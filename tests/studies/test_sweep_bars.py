@@ -11,15 +11,14 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.errors import CaseFileError, InputError
+from fastpin import CaseFileError, InputError, Result
 from fastpin.report.sweep import chart, text, write_csv
-from fastpin.solver.result import Result
 from fastpin.states.error_bars import pair_bar
-from fastpin.studies import sweep
+from fastpin.studies import parse_plan, sweep
 from fastpin.studies.index import Index
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, bar_of, value_of
-from fastpin.studies.plan import Plan, parse_plan
+from fastpin.studies.plan import Plan
 from scripts.inline import Inline
 from tests.support.plans import MOMENT
 from tests.support.tiers import for_gate

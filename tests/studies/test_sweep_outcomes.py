@@ -7,14 +7,13 @@ from typing import Any
 
 import pytest
 
-from fastpin.errors import InputError
+from fastpin import InputError, __version__
 from fastpin.storage import store
-from fastpin.studies import read_outcomes, sweep, workers
+from fastpin.studies import parse_plan, read_outcomes, read_plan, sweep, workers
 from fastpin.studies.index import Index
 from fastpin.studies.outcomes import OutcomeValue
-from fastpin.studies.plan import Plan, parse_plan, read_plan
+from fastpin.studies.plan import Plan
 from fastpin.studies.run_end import RunEnd
-from fastpin.version import __version__
 from scripts.inline import Inline
 from tests.support.outcomes import CYCLES, FILE, TABLE, deadly, last_work
 from tests.support.plans import MOMENT

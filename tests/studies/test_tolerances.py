@@ -7,19 +7,9 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
-from fastpin import report
-from fastpin.errors import CaseFileError, InputError
-from fastpin.studies import parse_plan, sweep
-from fastpin.studies.tolerances import (
-    MOST_FIELDS,
-    Tolerances,
-    effect_of,
-    effects_of,
-    parse_tolerances,
-    part_words,
-    rank_correlation,
-    read_tolerances,
-)
+from fastpin import CaseFileError, InputError, report
+from fastpin.studies import parse_plan, parse_tolerances, read_tolerances, sweep
+from fastpin.studies.tolerances import MOST_FIELDS, Tolerances, effect_of, effects_of, part_words, rank_correlation
 from scripts.inline import Inline
 from tests.support.body_texts import HEAD
 

@@ -10,14 +10,13 @@ import pytest
 
 import fastpin
 import fastpin.wear_lives
+from fastpin import CaseFileError, Result
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
 from fastpin.damage import Race
-from fastpin.errors import CaseFileError
-from fastpin.solver.result import Result
-from fastpin.studies import sweep
+from fastpin.studies import parse_plan, sweep
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import value_of
-from fastpin.studies.plan import Plan, parse_plan
+from fastpin.studies.plan import Plan
 from scripts.inline import Inline
 from tests.support.faults import faults_of
 from tests.support.outcomes import value

@@ -3,9 +3,8 @@
 import itertools
 from collections.abc import Iterator
 
-from fastpin import MATERIALS, Problem
+from fastpin import MATERIALS, MaterialPair, Problem
 from fastpin.bodies import Bushing, Ring, Tube
-from fastpin.model.materials import MaterialPair
 from tests.support.bodies import softer_hole
 
 INCH = 25.4

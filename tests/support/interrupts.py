@@ -9,10 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.model.history import LoadHistory
-from fastpin.model.problem import Problem
-from fastpin.solver.errors import Interrupted
-from fastpin.storage.recording import record, resume
+from fastpin import Interrupted, LoadHistory, Problem, record, resume
 
 
 class StopAt:

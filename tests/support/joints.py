@@ -6,11 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from fastpin import Material, MaterialPair, Problem, Result
 from fastpin.bodies import Bushing, Plate, Ring
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
 
 STEEL, BRONZE, ALUMINIUM = Material(210.0, 0.3), Material(110.0, 0.34), Material(69.0, 0.33)
 

@@ -2,9 +2,8 @@
 
 from typing import NamedTuple
 
-from fastpin.model.laminate import Laminate
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin import MATERIALS, Material, MaterialPair, Problem
+from fastpin.model import Laminate
 from tests.support.checks.laminate_rows import laminate
 
 HARD = (0.0, 0.0, 45.0, -45.0)

@@ -5,13 +5,9 @@ from pathlib import Path
 from typing import Any
 
 import fastpin
-from fastpin import casefile
-from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.model.profile import InitialGap, Profile
-from fastpin.wear_lives.wear_result import WearResult
+from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, casefile
+from fastpin.model import FatigueConstants, InitialGap, Profile
+from fastpin.wear_lives import WearResult
 
 CONSTANTS = FatigueConstants(
     fatigue_strength=714e6, strength_exponent=-0.078, fatigue_ductility=0.166, ductility_exponent=-0.538

@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
+from fastpin import MATERIALS, MaterialPair, Problem, solve
 
 THICKNESS = 8e-3
 PRESSED = {"P": 6000.0 / THICKNESS}

@@ -4,9 +4,7 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
+from fastpin import Problem, Result, solve
 
 
 def solve_once(problem: Problem, corners: Sequence[Mapping[str, float]], **options: Any) -> Result:

@@ -3,8 +3,7 @@
 import numpy as np
 
 from fastpin.cracks.dislocations import CrackLine
-from fastpin.lugs import images, plates
-from fastpin.lugs.outline import Hole, Lug
+from fastpin.lugs import Hole, Lug, images, plates
 from fastpin.lugs.panels import Edges
 from tests.support.lugs import disc
 

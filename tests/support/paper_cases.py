@@ -9,14 +9,12 @@ import math
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.kernels.status import STICK
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
 from fastpin.published.fretting import FRICTION as MU
 from fastpin.published.remote_stress import stress_unit
 from fastpin.published.tractions import PAIRS
-from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 
 EVERY_PAIR = pytest.mark.parametrize("pair", PAIRS)

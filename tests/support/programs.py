@@ -5,12 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
-from fastpin.states.state import State
+from fastpin import Grid, LoadHistory, Problem, Result, State, solve
 
 CYCLE = [{"Q": 0.275}, {"Q": -0.275}]
 FIELDS = ("pressure", "shear", "gap", "slip", "status")

@@ -5,15 +5,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fastpin import MATERIALS, Grid, LoadHistory, MaterialPair, Problem, Result, State
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS, named_load
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin.model import LOADS
+from fastpin.model.loads import named_load
 from fastpin.reading.marks import Marks
-from fastpin.solver.result import Result
-from fastpin.states.state import State
 
 PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 

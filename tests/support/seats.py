@@ -4,8 +4,7 @@ import functools
 from pathlib import Path
 
 import fastpin
-from fastpin import casefile
-from fastpin.model.case import Case
+from fastpin import Case, casefile
 
 BONDED = """
 pin.material = "steel"

@@ -6,13 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from fastpin import MATERIALS, Grid, Material, MaterialPair, Problem, Result, State, solve
 from fastpin.kernels.status import OPEN
-from fastpin.model.grid import Grid
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
-from fastpin.states.state import State
 from tests.support.snap_cases import GRIPPED, TURNED
 from tests.survey.histories import random_case
 

@@ -1,7 +1,6 @@
 """Joints whose pin snaps: problem and corners."""
 
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin import Material, MaterialPair, Problem
 
 
 def problem(pin, plate, load_parameter, friction):

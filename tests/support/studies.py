@@ -1,8 +1,7 @@
 """A small convergence study, for tests of studies, of their tables and of the command."""
 
-from fastpin.model.materials import MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.studies.convergence import Convergence, converge
+from fastpin import MaterialPair, Problem, converge
+from fastpin.studies.convergence import Convergence
 
 CORNERS: list[dict[str, float]] = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}]
 GRIDS = (51, 101, 201)

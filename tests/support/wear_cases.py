@@ -6,14 +6,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import fastpin
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.problem import Problem
-from fastpin.model.profile import NO_GAP, InitialGap, Profile
+from fastpin import Grid, LoadHistory, Problem
+from fastpin.model import InitialGap, Profile
+from fastpin.model.profile import NO_GAP
 from fastpin.model.profile_terms import Harmonic
 from fastpin.verification.joint_rows import step, wearing
+from fastpin.wear_lives import WearResult
 from fastpin.wear_lives.wear_path import Removal, WearRun
-from fastpin.wear_lives.wear_result import WearResult
 from tests.support.slip_cases import LIKE, UNLIKE
 
 Loads = dict[str, float]

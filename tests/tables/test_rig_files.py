@@ -6,9 +6,8 @@ from typing import Any
 
 import pytest
 
-from fastpin import LoadHistory
-from fastpin.errors import CaseFileError, InputError
-from fastpin.model.loads import LOADS
+from fastpin import CaseFileError, InputError, LoadHistory
+from fastpin.model import LOADS
 from fastpin.tables.load_units import INCH, POUND
 from tests.support.times import growth
 

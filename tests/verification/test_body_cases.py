@@ -5,10 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.bodies import Bushing
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from tests.support.bodies import UNLIKE
 from tests.support.checks.body_cases import CASES
 from tests.support.tiers import some_survey

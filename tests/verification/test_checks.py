@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fastpin import ConvergenceError
 from fastpin.cli.main import main
 from fastpin.cli.verify import check_table as table
 from fastpin.elasticity import stress as formulas
 from fastpin.kernels import cauchy, conjugate, influence
 from fastpin.reading import stress
 from fastpin.solver import solving
-from fastpin.solver.errors import ConvergenceError
 from fastpin.verification import checks as installation
 from fastpin.verification import closed_forms, finite_elements, rows
 from fastpin.verification.checks import TOPICS

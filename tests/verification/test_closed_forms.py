@@ -8,8 +8,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import ellipk, ellipkm1
 
-from fastpin.errors import InputError
-from fastpin.model.materials import Material, MaterialPair
+from fastpin import InputError, Material, MaterialPair
 from fastpin.verification import closed_forms
 
 PERSSON = [  # L_p, half-angle in degrees, N(0) R/F

@@ -8,12 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
+from fastpin import MATERIALS, Grid, InputError, Material, MaterialPair, Problem, solve
 from fastpin.kernels import influence
-from fastpin.model.grid import Grid
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from tests.support.bodies import JOINTS, joint_problem
 from tests.support.checks.integral_equations import cauchy_matrix, residuals, residuals_away

@@ -10,13 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fastpin import MATERIALS, InputError, Material, MaterialPair, Problem, State, solve
 from fastpin.bodies import Bushing, Plate, Ring, Tube
-from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
-from fastpin.states.state import State
 from fastpin.verification import interference
 from fastpin.verification.comparisons import all_round_difference, event_load
 from fastpin.verification.joint_rows import BRONZE

@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from fastpin.model.grid import Grid
-from fastpin.model.materials import MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
+from fastpin import Grid, MaterialPair, Problem, solve
 from tests.support.checks import integral_equations
 from tests.support.laminates import STEEL, TURNED
 

@@ -5,10 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
+from fastpin import InputError, Material, MaterialPair, Problem, solve
 from fastpin.verification import closed_forms
 from fastpin.verification.finite_elements import FiniteElements
 

@@ -8,18 +8,14 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.errors import InputError, InputWarning
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.profile import Profile
+from fastpin import Grid, InputError, LoadHistory, SolveError
+from fastpin.errors import InputWarning
+from fastpin.model import Profile, Wear
 from fastpin.model.profile_terms import Zone
-from fastpin.model.wear import Wear
-from fastpin.solver.errors import SolveError
 from fastpin.verification.joint_rows import step, wearing
 from fastpin.verification.rows import Solving
-from fastpin.wear_lives import fat_cycles
+from fastpin.wear_lives import WearResult, fat_cycles
 from fastpin.wear_lives.fat_cycles import FatCycles
-from fastpin.wear_lives.wear_result import WearResult
 from tests.support.checks.wear_limits import rigid_sliding
 from tests.support.checks.wear_rows import final_state, half_planes
 from tests.support.slip_cases import LIKE, UNLIKE

@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.profile import InitialGap, Profile
-from fastpin.model.wear import Wear
-from fastpin.solver.errors import ArcError
-from fastpin.wear_lives.wear_result import WearResult
+from fastpin import Grid, LoadHistory
+from fastpin.model import InitialGap, Profile, Wear
+from fastpin.solver import ArcError
+from fastpin.wear_lives import WearResult
 from tests.support.slip_cases import LIKE, UNLIKE
 from tests.support.tiers import some_gate
 from tests.support.wear_cases import BUMPED, BUMPED_TURNS, WEAR_CASES

@@ -5,17 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import Grid, SolveOptions, solve
 from fastpin.elasticity.operator import DenseOperator, SoftOperator
 from fastpin.elasticity.system import System
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
-from fastpin.model.options import SolveOptions
-from fastpin.model.profile import Profile
+from fastpin.model import LOADS, Profile
 from fastpin.model.profile_terms import Zone
 from fastpin.solver import first_contact
 from fastpin.solver.configuration import elastic_energy, worst_residual
 from fastpin.solver.increment import implicit_step
-from fastpin.solver.solving import solve
 from fastpin.verification.joint_rows import step, wearing
 from tests.support.tiers import some_survey
 from tests.support.wear_cases import WEAR_CASES, lived, numbers_of, parts_of, ready_to_wear

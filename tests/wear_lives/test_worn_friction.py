@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.errors import InputError
-from fastpin.model.grid import Grid
+from fastpin import Grid, InputError, NoEquilibriumError
 from fastpin.model.profile import profile_of_nodes
-from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.followed import follow_friction, followed_problem
 from fastpin.wear_lives import WearResult, WornCycle
 from tests.support.tiers import gate

@@ -10,18 +10,17 @@ from typing import Any, NamedTuple
 import pytest
 
 import fastpin
-from fastpin import assess
+from fastpin import MaterialPair, assess
 from fastpin.assess.wear import cycle_columns, cycles_curve, scar_curves
 from fastpin.model import FatigueAssessment
 from fastpin.model.case import beside_of
-from fastpin.model.materials import MaterialPair
 from fastpin.model.units import units
 from fastpin.pages.sections import crack, fatigue, strength
 from fastpin.pages.source import margins
 from fastpin.pages.wear import damage, numbers, overview
+from fastpin.studies import parse_plan
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import value_of
-from fastpin.studies.plan import parse_plan
 from tests.support.case_texts import STEEL_IN_LAMINATE
 from tests.support.commands import said
 from tests.support.fatigue import CONSTANTS

@@ -5,15 +5,12 @@ from typing import Any
 
 import pytest
 
+from fastpin import MATERIALS, CaseFileError, InputError, LoadHistory, Material, MaterialPair, Problem
 from fastpin.bodies import Bushing, Plate, Ring, Tube
-from fastpin.casefile.reader import parse_case
+from fastpin.casefile import parse_case
 from fastpin.cli.main import main
-from fastpin.errors import CaseFileError, InputError
 from fastpin.model.acting import check_loads
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.studies.plan import parse_plan
+from fastpin.studies import parse_plan
 from tests.support.bodies import soft_plate
 
 PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])

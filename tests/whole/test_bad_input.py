@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import bodies, damage, model, states
-from fastpin.casefile.reader import parse_case
+from fastpin import CaseFileError, InputError, SolveOptions, bodies, damage, model, states
+from fastpin.casefile import parse_case
 from fastpin.cli.main import main
-from fastpin.errors import CaseFileError, InputError
-from fastpin.model.options import SolveOptions
-from fastpin.studies.plan import parse_plan
+from fastpin.studies import parse_plan
 
 CASE: dict[str, dict[str, Any]] = {
     "pin": {"E": 116e9, "nu": 0.32},

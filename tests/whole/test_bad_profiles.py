@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.casefile.reader import parse_case
+from fastpin import CaseFileError, InputError, Problem
+from fastpin.casefile import parse_case
 from fastpin.cli.main import main
-from fastpin.errors import CaseFileError, InputError
-from fastpin.model.problem import Problem
-from fastpin.model.profile import InitialGap, Profile
-from fastpin.studies.plan import parse_plan
+from fastpin.model import InitialGap, Profile
+from fastpin.studies import parse_plan
 from tests.support.case_texts import PRESSED
 from tests.support.samples import PAIR
 

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from tests.support.bodies import JOINTS, UNLIKE, joint_problem
 
 ALL = [*JOINTS, "ring, compliance"]

@@ -4,8 +4,7 @@ import pytest
 
 from fastpin import MATERIALS, Material, MaterialPair, Problem, solve
 from fastpin.bodies import Ring
-from fastpin.lugs.outline import Lug
-from fastpin.lugs.plates import plate_compliance
+from fastpin.lugs import Lug, plate_compliance
 from tests.support.lugs import disc, make_rough, plate
 from tests.support.tiers import for_gate
 

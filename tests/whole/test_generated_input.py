@@ -13,17 +13,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import fastpin
-from fastpin.casefile.reader import parse_case
-from fastpin.errors import CaseFileError, FastpinError, InputError, printable
+from fastpin import Case, CaseFileError, FastpinError, InputError, LoadHistory, SolveError, SolveOptions
+from fastpin.casefile import parse_case
+from fastpin.errors import printable
 from fastpin.model.acting import check_arc, check_loads
-from fastpin.model.case import Case
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import Corner
-from fastpin.model.options import SolveOptions
 from fastpin.model.profile import is_pair
-from fastpin.solver.errors import SolveError
-from fastpin.storage.recording import stored_case
-from fastpin.studies.plan import parse_plan
+from fastpin.storage import stored_case
+from fastpin.studies import parse_plan
 from tests.support import strategies
 from tests.support.strategies import Tables, as_toml, tables_of, text_of
 

@@ -7,16 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin.casefile.reader import EXAMPLE, parse_case
-from fastpin.errors import CaseFileError, InputError
-from fastpin.model.case import Case
-from fastpin.model.problem import Problem
-from fastpin.report.case import describe
-from fastpin.report.states import state_table
+from fastpin import Case, CaseFileError, InputError, Problem, solve
+from fastpin.casefile import EXAMPLE, parse_case
+from fastpin.report import describe, state_table
 from fastpin.report.summary import document
-from fastpin.solver.solving import solve
+from fastpin.studies import parse_plan
 from fastpin.studies.identity import canonical
-from fastpin.studies.plan import parse_plan
 from tests.support.checks.sliding import solve_sliding
 from tests.support.programs import difference
 from tests.support.tiers import gate

@@ -8,21 +8,16 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin import Grid, InputError, Material, Problem, solve
 from fastpin.bodies import Bushing, Ring
 from fastpin.elasticity.system import System
-from fastpin.errors import InputError
 from fastpin.kernels.status import STICK
+from fastpin.model import LOADS, InitialGap, Profile
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
-from fastpin.model.materials import Material
-from fastpin.model.problem import Problem
-from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples
+from fastpin.solver import ArcError
 from fastpin.solver.driven import can_float
-from fastpin.solver.errors import ArcError
 from fastpin.solver.rest import hole_gap, rest_position
-from fastpin.solver.solving import solve
 from fastpin.verification import interference
 from fastpin.verification.comparisons import all_round_difference
 from fastpin.verification.finite_elements import LIKE, UNLIKE

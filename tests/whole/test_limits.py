@@ -5,12 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
+from fastpin import ConvergenceError, Grid, InputError, NoEquilibriumError, Problem, solve
 from fastpin.kernels.status import OPEN
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
-from fastpin.solver.errors import ArcError, ConvergenceError, NoEquilibriumError
-from fastpin.solver.solving import solve
+from fastpin.solver import ArcError
 from fastpin.verification import closed_forms
 from tests.support.tiers import some_gate
 

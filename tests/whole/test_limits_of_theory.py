@@ -8,11 +8,10 @@ import pytest
 
 from docs.beyond import rigid_pin
 from docs.beyond.figures import FIGURES
+from fastpin import Problem, solve
 from fastpin.assess.outputs import Curve
-from fastpin.model.problem import Problem
 from fastpin.published import catalog, half_plane
 from fastpin.published.records import PaperFigure
-from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from tests.support.tiers import gate
 

@@ -5,10 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from fastpin import Grid, Problem, solve
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from tests.support.tiers import gate, seeds
 from tests.survey.histories import NODES, random_case
 from tests.survey.random_histories import examine

@@ -6,12 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import Grid, Material, MaterialPair, Problem, solve
 from fastpin.bodies import Disk, Ring, Tube
 from fastpin.elasticity.system import System
-from fastpin.model.grid import Grid
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from tests.support.potentials import displacement_kernels
 from tests.support.slip_cases import UNLIKE
 from tests.support.tiers import seeds, some_gate

@@ -9,18 +9,11 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin import Grid, Interrupted, LoadHistory, Material, MaterialPair, Problem, Result, State, solve
+from fastpin.model import InitialGap, Profile
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import Corner
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
-from fastpin.solver.errors import Interrupted
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
-from fastpin.states.state import State
 from tests.support.bodies import JOINTS, UNLIKE, joint_problem
 from tests.support.interrupts import StopAt
 from tests.support.joints import joint

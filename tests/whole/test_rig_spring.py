@@ -3,12 +3,9 @@
 import numpy as np
 import pytest
 
-from fastpin.casefile.reader import parse_case
-from fastpin.casefile.writer import case_text
-from fastpin.errors import InputError
-from fastpin.model.problem import Problem
-from fastpin.report.case import describe
-from fastpin.solver.solving import solve
+from fastpin import InputError, Problem, solve
+from fastpin.casefile import case_text, parse_case
+from fastpin.report import describe
 from tests.support.case_texts import IN_A_RIG
 
 HISTORY = [{"P": 1.0}, {"ux": 0.3}, {"ux": -0.3}, {"ux": 0.3}]

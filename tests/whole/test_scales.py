@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.errors import InputError
-from fastpin.solver.errors import ConvergenceError, SolveError
+from fastpin import ConvergenceError, InputError, SolveError
 
 
 @pytest.mark.parametrize("name", ["P", "Q", "M", "sxx", "syy", "sxy", "rotation"])

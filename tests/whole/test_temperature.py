@@ -4,15 +4,11 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin import Grid, InputError, Material, MaterialPair, Problem, solve
 from fastpin.bodies import Bushing, Compliance, Ring, Tube
-from fastpin.damage.histories import stress_history
-from fastpin.errors import InputError
-from fastpin.model.grid import Grid
-from fastpin.model.laminate import Laminate
+from fastpin.damage import stress_history
+from fastpin.model import Laminate
 from fastpin.model.loads import TEMPERATURE
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from tests.support.tiers import seeds
 from tests.survey.conditions import TOLERANCE, check_states
 

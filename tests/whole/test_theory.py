@@ -6,11 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 
+from fastpin import MATERIALS, Grid, Material, MaterialPair, Problem, solve
 from fastpin.kernels import influence
-from fastpin.model.grid import Grid
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from tests.support.checks.integral_equations import cauchy_matrix
 from tests.support.integrals import log_integrals

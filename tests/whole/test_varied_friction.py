@@ -6,16 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
+from fastpin import Grid, InputError, Problem, Result, State, solve
 from fastpin.kernels.status import STICK
+from fastpin.model import Profile
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
-from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import Harmonic, Zone
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
-from fastpin.states.state import State
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from tests.support.checks.sliding import solve_sliding
 from tests.support.programs import assert_same_bits

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
+from fastpin import Problem, State
 from fastpin.cracks import Crack, stress_intensity
 from fastpin.model.growth import SMOOTH_EDGE
-from fastpin.model.problem import Problem
-from fastpin.states.state import State
 from fastpin.verification.finite_elements import LIKE
 from fastpin.verification.rows import Checks, Solving, relative_check
 from tests.support.checks.body_cases import RING

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin import MATERIALS, Material, MaterialPair, Problem
 from fastpin.verification.finite_elements import UNLIKE
 from fastpin.verification.rows import Checks, Solving, angle_check, difference_check, half_width, relative_check
 from tests.support.checks.integral_equations import residuals_away

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from fastpin.model.problem import Problem
-from fastpin.model.profile import Profile
+from fastpin import Problem, State
+from fastpin.model import Profile
 from fastpin.model.profile_terms import Harmonic
-from fastpin.states.state import State
 from fastpin.verification.finite_elements import FRETTING, UNLIKE
 from fastpin.verification.joint_rows import PUSHED
 from fastpin.verification.rows import Check, Checks, Solving, difference_check, relative_check

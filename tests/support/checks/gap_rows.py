@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from fastpin import MaterialPair, Problem
+from fastpin.model import InitialGap, Profile
 from fastpin.model.angles import BOTTOM
-from fastpin.model.materials import MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.verification.comparisons import all_round_difference
 from fastpin.verification.finite_elements import LIKE

@@ -15,18 +15,16 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fastpin import Grid, InputError, Problem, State
 from fastpin.bodies.compliance import complex_coefficients, plate_coefficients
 from fastpin.elasticity.system import System
 from fastpin.elasticity.terms import BodyTerms, body_terms
-from fastpin.errors import InputError
 from fastpin.kernels import fourier, influence
-from fastpin.model import angles, loads
+from fastpin.model import LOADS, angles, loads
 from fastpin.model.checks import number, numbers, positive
-from fastpin.model.grid import LEAST_NODES, Grid
-from fastpin.model.loads import LOADS, SXX, SXY, SYY, P, Q
-from fastpin.model.problem import Problem
+from fastpin.model.grid import LEAST_NODES
+from fastpin.model.loads import SXX, SXY, SYY, P, Q
 from fastpin.solver.rest import rest_position
-from fastpin.states.state import State
 
 
 def cauchy_matrix(grid: Grid) -> np.ndarray:

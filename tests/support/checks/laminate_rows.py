@@ -12,10 +12,9 @@ from functools import partial
 
 import numpy as np
 
-from fastpin.model.grid import Grid
-from fastpin.model.laminate import Laminate, in_axes
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin import MATERIALS, Grid, Material, MaterialPair, Problem
+from fastpin.model import Laminate
+from fastpin.model.laminate import in_axes
 from fastpin.verification.joint_rows import MODULI
 from fastpin.verification.rows import Checks, Solving, difference_check, relative_check
 

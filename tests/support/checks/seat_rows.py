@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from fastpin import MATERIALS, MaterialPair, Problem
 from fastpin.bodies import Bushing, Disk
 from fastpin.bodies.body import PlateBody
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
 from fastpin.verification.rows import Checks, Solving, difference_check, relative_check
 
 PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"], "strain")

@@ -30,13 +30,11 @@ from scipy.optimize import minimize_scalar, root
 from scipy.special import eval_jacobi, roots_jacobi, zeta
 from threadpoolctl import threadpool_limits
 
+from fastpin import ConvergenceError, InputError, Problem
 from fastpin.bodies.compliance import complex_coefficients, plate_coefficients
 from fastpin.elasticity.terms import BodyTerms, body_terms
-from fastpin.errors import InputError
 from fastpin.model import angles, checks
 from fastpin.model.loads import SXX, SXY, SYY, P, Q
-from fastpin.model.problem import Problem
-from fastpin.solver.errors import ConvergenceError
 from fastpin.verification.interference import check_isotropic
 
 SLIDING_LOADS = ("P", "Q", "sxx", "syy", "sxy")

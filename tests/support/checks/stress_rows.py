@@ -7,10 +7,9 @@ import math
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from fastpin import Points, Problem, State
 from fastpin.model.angles import BOTTOM
-from fastpin.model.points import Body, Points
-from fastpin.model.problem import Problem
-from fastpin.states.state import State
+from fastpin.model.points import Body
 from fastpin.verification import closed_forms
 from fastpin.verification.checks import BODIES
 from fastpin.verification.finite_elements import FRETTING, LIKE

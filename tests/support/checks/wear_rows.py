@@ -6,22 +6,18 @@ import math
 
 import numpy as np
 
+from fastpin import Grid, LoadHistory, Problem, SolveOptions
+from fastpin.model import InitialGap, Profile, Wear
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
-from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
-from fastpin.model.wear import Wear
 from fastpin.solver.configuration import elastic_energy
 from fastpin.verification import interference
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.joint_rows import fretted, step, wearing
 from fastpin.verification.rows import Checks, Solving, difference_check, relative_check
+from fastpin.wear_lives import WornCycle
 from fastpin.wear_lives.life import CyclesInMemory, WearTask
 from fastpin.wear_lives.wear_path import WearRun
-from fastpin.wear_lives.wear_result import WornCycle
 from tests.support.checks import wear_limits
 from tests.support.checks.gap_rows import WAVES
 
