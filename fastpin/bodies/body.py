@@ -514,6 +514,11 @@ class PlateBody(BodyBase):
         """Pressure in the seat of a bush before any load, Pa, under the pressure `contact` at its bore; else 0."""
         return 0.0
 
+    @property
+    def without_others(self) -> PlateBody:
+        """The plate without what other pins do to its hole in one state of a joint; itself where nothing does."""
+        return self
+
     def highest_inside(self, rim: Rim) -> int:
         """The highest harmonic that matters in the plate, up to its outer rim."""
         return harmonics.harmonics_needed(math.sqrt(1.0 / self.far(rim)))

@@ -13,6 +13,9 @@ from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.errors import InputError
 from fastpin.solver import Interrupted, SolveError
 
+JUDGED = "margins and fatigue"
+"""Text of the progress bar after the solution."""
+
 
 def run(options: argparse.Namespace) -> int:
     """Solve a joint file and print, draw and write its result; or print a commented joint file."""
@@ -44,8 +47,10 @@ def run(options: argparse.Namespace) -> int:
         terminal.say(f"note: {len(result)} of {len(case.corners)} load points were reached", file=sys.stderr)
     draws = {options.plot: figures.plot_joint, options.shares: figures.plot_shares}
     files = [(name, partial(draw, result, title=case.title)) for name, draw in draws.items()]
+    with Bar(1.0, JUDGED) as bar:
+        judged = report.joints.judged(result, case.fatigue, not code, progress_to(bar))
     unit = report.joints.joint_units(result.joint)
-    document = partial(outputs.whole_document, report.joints.JOINT, result, unit, title=case.title)
-    text = [*filter(None, [case.title]), *report.joints.describe(result).split("\n")]
+    document = partial(outputs.whole_document, report.joints.JOINT, judged, unit, title=case.title)
+    text = [*filter(None, [case.title]), *report.joints.describe(judged).split("\n")]
     written = terminal.write_outputs(files, options.json, document, lambda: text)
     return code or written

@@ -30,7 +30,7 @@ from fastpin.runtime.threads import in_threads
 from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.reading_bounds import MAPPED
 from fastpin.states.state import State
-from fastpin.states.stress_map import mapped, share_grids
+from fastpin.states.stress_map import mapped, share_map
 
 CrackedBody = Literal["plate", "seat"]
 
@@ -350,7 +350,7 @@ def histories(
     """
     check_callable("residual_stress", residual_stress, 1)
     cracks = CrackWeights.of(edge, rows, turns, residual_stress)
-    if straight and len(states) > MAPPED and share_grids(states):
+    if straight and len(states) > MAPPED and share_map(states):
         K = _mapped(states, edge, cracks)
     else:
         K = np.array(

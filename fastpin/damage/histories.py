@@ -20,7 +20,7 @@ from fastpin.reading.stress import Stress, stress_at
 from fastpin.runtime.threads import in_threads
 from fastpin.states.reading_bounds import MAPPED
 from fastpin.states.state import State
-from fastpin.states.stress_map import mapped, share_grids
+from fastpin.states.stress_map import mapped, share_map
 
 ROOM = 2**23
 """Numbers that a block of points may hold: 64 MB. While a block is counted, twice as much is in use beside it."""
@@ -68,6 +68,7 @@ def different_states(states: Sequence[State], straight: bool) -> tuple[list[Stat
     """Return the states with different stresses, and the place of each state among them, int64, shape (states,)."""
     seen: dict[bytes, int] = {}
     shared: dict[Hashable, bytes] = {}  # by the arrays of a state: repeated states often share them
+    problems: dict[Problem, int] = {}  # what other pins of a joint do to the hole belongs to them
     different: list[State] = []
     order = np.empty(len(states), dtype=np.int64)
     for k, state in enumerate(states):
@@ -78,7 +79,7 @@ def different_states(states: Sequence[State], straight: bool) -> tuple[list[Stat
         if (change, same) not in shared:
             shared[change, same] = _digest(parts, straight)
         remote = np.array([part.load.get(loads.LOADS[place], 0.0) for part in parts for place in loads.STRESSING])
-        key = shared[change, same] + remote.tobytes()
+        key = shared[change, same] + remote.tobytes() + b"%d" % problems.setdefault(state.problem, len(problems))
         order[k] = seen.setdefault(key, len(different))
         if order[k] == len(different):
             different.append(state)
@@ -111,7 +112,7 @@ def history_blocks(
     size = max(ROOM // (8 * nodes + 4 * len(states)), 1)
     theta, depth = points.theta.ravel(), points.depths(states[0].problem, body).ravel()
     is_deep = body == "pin" and bool(np.any(depth > 0.5))  # near the centre a moment has an infinite stress
-    is_mapped = straight and not is_deep and len(states) > MAPPED and share_grids(states)
+    is_mapped = straight and not is_deep and len(states) > MAPPED and share_map(states)
     for begin in range(0, max(count, 1), size):
         part = slice(begin, min(begin + size, count))
         some = Points.at_depth(depth[part] * states[0].problem.hole_radius, theta[part]) if size < count else points

@@ -10,13 +10,16 @@ import itertools
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from fastpin.casefile.beside import read_assessment
 from fastpin.casefile.lug import limits_of, point_of
 from fastpin.casefile.materials import read_material
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.joints.parts import REMOTE_NAMES, Joint, JointPin, JointPlate, tate_rosenfeld
+from fastpin.joints.result import check_fatigue
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
 from fastpin.lugs.outline import Part, rectangle
+from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
 from fastpin.model.keys import ANY, JOINT
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
@@ -29,6 +32,7 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves"),
     "pin": ("name", "at", *MATERIAL_KEYS, "diameter", "plates", "clearance", "friction", "flexibility"),
     "load": (),
+    "fatigue": ASSESSMENT_KEYS,
 }
 """Sections of a joint file and their keys. The keys of [[load]] are the loads of the joint."""
 
@@ -47,6 +51,8 @@ class JointFile(NamedTuple):
     title : str
     nodes : int
     harmonics : int or None
+    fatigue : FatigueAssessment or None
+        How the fatigue at all pins is assessed, for :meth:`fastpin.joints.JointResult.assessed_fatigue`.
     """
 
     joint: Joint
@@ -54,6 +60,7 @@ class JointFile(NamedTuple):
     title: str
     nodes: int
     harmonics: int | None
+    fatigue: FatigueAssessment | None = None
 
 
 def read_joint(path: str | Path) -> JointFile:
@@ -92,6 +99,7 @@ def _joint_file(source: CaseText) -> JointFile | None:
     plates = [_plate(source, block) for block in _required(source, "plate")]
     pins = [each for block in _required(source, "pin") for each in _pins(source, block, plates)]
     loads = _required(source, "load")
+    how = read_assessment(source, source.section("fatigue")) if "fatigue" in source.root else None
     if source.faults or plane is None or None in plates or None in pins:
         return None
     try:
@@ -108,8 +116,14 @@ def _joint_file(source: CaseText) -> JointFile | None:
         source.report(f"the history has {len(corners) * times:,} corners, more than {MOST_CORNERS:,}", "load")
     if source.faults:
         return None
-    load_values(joint, corners)
-    return JointFile(joint, corners * times, title, nodes, harmonics)
+    values = load_values(joint, corners * times)
+    if how is not None:
+        try:
+            check_fatigue(joint, how, values)
+        except InputError as error:
+            source.section("fatigue").report(str(error), error.field)
+            return None
+    return JointFile(joint, corners * times, title, nodes, harmonics, how)
 
 
 def _required(source: CaseText, name: str) -> list[Section]:

@@ -2,15 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
+from fastpin.damage.assessed import assessed_fatigue
+from fastpin.damage.spectrum import SpectrumDamage
+from fastpin.errors import InputError
 from fastpin.joints.parts import Joint
-from fastpin.model.checks import known_name
+from fastpin.model.assessment import FatigueAssessment, check_assessment
+from fastpin.model.checks import check_callable, instance, known_name
+from fastpin.states.extremes import KeptStates, find_extremes
+from fastpin.states.margins import Margin, static_margins
 from fastpin.states.state import State
+from fastpin.states.yielding import PREFIX, yielding_owners
+
+
+class SectionDamage(NamedTuple):
+    """The damage of the plate, or of the pin, where a pin goes through a plate."""
+
+    pin: str
+    plate: str
+    found: SpectrumDamage
+
+
+class SectionMargin(NamedTuple):
+    """A margin of safety of the plate, or of the pin, where a pin goes through a plate."""
+
+    pin: str
+    plate: str
+    margin: Margin
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,3 +158,113 @@ class JointResult(Sequence[JointState]):
             touching = [state.step for state in self.states if state.contacts[place].in_contact]
             found[pin.name, plate.name] = touching[0] if touching else -1
         return found
+
+    @property
+    def last_cycle(self) -> tuple[JointState, ...]:
+        """The states of the last cycle, from the corner at which it begins; none without a cycle.
+
+        A cycle is the shortest run of corners at the end of the history that repeats the loads of the corners before.
+        """
+        length = _cycle_length(np.array([list(state.load.values()) for state in self.states]))
+        return self.states[-length - 1 :] if length else ()
+
+    def assessed_fatigue(
+        self, how: FatigueAssessment | None = None, progress: Callable[[float, float], None] | None = None
+    ) -> list[SectionDamage]:
+        """The damage of plates and pins at every contact over one pass of a spectrum.
+
+        See :func:`fastpin.damage.assessed_fatigue`. The stresses are those at the load points.
+
+        Parameters
+        ----------
+        how : FatigueAssessment, optional
+            By default Smith, Watson and Topper over the whole history. A pass may be the :attr:`last_cycle`.
+        progress : callable, optional
+            Called as ``progress(done, total)`` now and then.
+
+        Returns
+        -------
+        list of SectionDamage
+            Criterion by criterion, the largest damage first. Parts whose material lacks the constants are left out.
+
+        Raises
+        ------
+        InputError
+            If no material has the constants, or there are less than two states or no cycle.
+        """
+        how = FatigueAssessment() if how is None else instance("how", how, FatigueAssessment, "a FatigueAssessment")
+        check_callable("progress", progress)
+        check_fatigue(self.joint, how, np.array([list(state.load.values()) for state in self.states]))
+        states, known = self.states if how.over == "history" else self.last_cycle, _assessed_sections(self.joint, how)
+        found = []
+        for done, place in enumerate(known):
+            pin, plate = self.joint.sections[place]
+
+            def tell(part: float, whole: float, done: int = done) -> None:
+                if progress is not None:
+                    progress(done + part / whole, len(known))
+
+            at_pin = assessed_fatigue([state.contacts[place] for state in states], how, tell)
+            found += [SectionDamage(pin.name, plate.name, each) for each in at_pin]
+        return sorted(found, key=lambda one: (how.criteria.index(one.found.criterion), -one.found.hot_spot.damage))
+
+    def margins(self, progress: Callable[[float, float], None] | None = None) -> list[SectionMargin]:
+        """The margins of yield and ultimate strength of plates and pins at every contact over all states.
+
+        The smallest one comes first, those that are not known last. A hole is looked at near its edge only.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called as ``progress(done, total)`` now and then.
+
+        Raises
+        ------
+        InputError
+            If `progress` can't be called.
+        """
+        check_callable("progress", progress)
+        found = []
+        for place, (pin, plate) in enumerate(self.joint.sections if self.states else ()):
+            kept = KeptStates([state.contacts[place] for state in self.states])
+            wanted = [PREFIX + owner for owner in yielding_owners(kept.problem)]
+            rows = static_margins(kept.problem, find_extremes(kept, [(name, "largest") for name in wanted]), kept.read)
+            found += [SectionMargin(pin.name, plate.name, row) for row in rows]
+            if progress is not None:
+                progress(place + 1, len(self.joint.sections))
+        return sorted(found, key=lambda one: (math.isnan(one.margin.margin), one.margin.margin))
+
+
+def check_fatigue(joint: Joint, how: FatigueAssessment, loads: np.ndarray) -> None:
+    """Check that the fatigue of a joint can be assessed under the loads of its corners, shape (corners, loads).
+
+    Raises
+    ------
+    InputError
+        If no material has the constants, or the history has one corner or no cycle.
+    """
+    _assessed_sections(joint, how)
+    if len(loads) < 2:
+        raise InputError("fatigue", "needs a turning point: the history has one corner only")
+    if how.over == "cycle" and not _cycle_length(loads):
+        raise InputError("over", "the history has no cycles: repeat = 2 in [joint] repeats its corners")
+
+
+def _cycle_length(loads: np.ndarray) -> int:
+    """Corners of the shortest run at the end of a history that repeats the loads before; 0 without one."""
+    lengths = range(2, len(loads) // 2 + 1)
+    return next((n for n in lengths if np.array_equal(loads[-n:], loads[-2 * n : -n])), 0)
+
+
+def _assessed_sections(joint: Joint, how: FatigueAssessment) -> list[int]:
+    """The places of the sections whose fatigue can be assessed. Without any, the error of the first one is raised."""
+    known, errors = [], []
+    for place, section in enumerate(joint.sections):
+        try:
+            check_assessment(joint.problem(*section), how)
+            known.append(place)
+        except InputError as error:
+            errors.append(error)
+    if not known:
+        raise errors[0]
+    return known

@@ -54,6 +54,10 @@ class HoleInPlate(Compliance):
         numbers = np.r_[self.nu, self.hole_radius, self.matrix.ravel(), self.incoming]
         return hashlib.sha256(self.plane.encode() + numbers.tobytes()).hexdigest()
 
+    @cached_property
+    def without_others(self) -> Compliance:
+        return Compliance(self.nu, self.plane, self.hole_radius, self.matrix)
+
     def _moved_by(self, column: np.ndarray) -> np.ndarray:
         return np.asarray(super()._moved_by(column) + complex_coefficients(self.incoming))
 

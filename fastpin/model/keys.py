@@ -93,6 +93,7 @@ JOINT: dict[str, Any] = {
     "pin": MATERIAL
     | _of("length", "at", "diameter")
     | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility"},
+    "fatigue": CASE["fatigue"],
 }
 """The kinds of a joint file, apart from its loads."""
 

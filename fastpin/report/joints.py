@@ -3,24 +3,89 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from fastpin.assess import outputs
-from fastpin.assess.outputs import NUMBER, TEXT, WHOLE, Column, Output, list_of, map_of, table
-from fastpin.joints import Joint, JointPin, JointPlate, JointResult, JointState
+from fastpin.assess import fatigue, margins, outputs
+from fastpin.assess.outputs import NUMBER, TEXT, WHOLE, Column, Output, list_of, map_of, schema_of, table
+from fastpin.damage.criteria import criterion_title
+from fastpin.errors import InputError
+from fastpin.joints import Joint, JointPin, JointPlate, JointResult, JointState, SectionDamage, SectionMargin
 from fastpin.model import angles, ties
-from fastpin.model.units import Unit, units_of
+from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.points import owner_of
+from fastpin.model.units import Unit, units, units_of
+from fastpin.states.margins import over_yield, over_yield_words, smallest_margin
+from fastpin.states.quantities import point_name
 from fastpin.states.state import State
+
+MOST_LISTED = 20
+"""Most margins, and most lives, that are printed."""
 
 UNRESOLVED = " (not resolved)"
 """Words beside a value that the nodes do not resolve."""
 
 
-def describe(result: JointResult) -> str:
-    """Return the joint, the forces of its pins at all load points, and what is largest at each pin, as text."""
+class Judged(NamedTuple):
+    """The result of a joint, the margins of its strengths, and its fatigue.
+
+    Attributes
+    ----------
+    result : JointResult
+    margins : list of SectionMargin
+    how : FatigueAssessment or None
+    damages : list of SectionDamage
+        Empty unless the fatigue is assessed.
+    reason : str
+        Why the fatigue is not known; empty if it is, or if nobody asked for it.
+    """
+
+    result: JointResult
+    margins: list[SectionMargin]
+    how: FatigueAssessment | None
+    damages: list[SectionDamage]
+    reason: str = ""
+
+    @property
+    def over(self) -> dict[tuple[str, str], dict[str, float]]:
+        """The bodies that yield at each pin in each plate, see :func:`fastpin.states.margins.over_yield`."""
+        at = defaultdict(list)
+        for pin, plate, margin in self.margins:
+            at[pin, plate].append(margin)
+        return {names: over_yield(rows) for names, rows in at.items()}
+
+
+def judged(
+    result: JointResult,
+    how: FatigueAssessment | None = None,
+    is_complete: bool = True,
+    progress: outputs.Follow | None = None,
+) -> Judged:
+    """Find the margins of the strengths of a result, and its fatigue if `how` says how and the history is complete."""
+
+    def half(begin: float) -> outputs.Follow | None:
+        return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
+
+    margins = result.margins(half(0.0))
+    if how is None:
+        return Judged(result, margins, None, [])
+    if not is_complete:
+        return Judged(result, margins, how, [], "the history has not come to its end")
+    try:
+        return Judged(result, margins, how, result.assessed_fatigue(how, half(0.5)))
+    except InputError as error:
+        return Judged(result, margins, how, [], str(error))
+
+
+def describe(judged: Judged) -> str:
+    """Return the joint, the forces of its pins at all load points, and what is largest at each pin, as text.
+
+    Margins of known strengths and the fatigue follow.
+    """
+    result = judged.result
     joint = result.joint
     orders = ", ".join(dict.fromkeys(f"{order}" for order in result.harmonics))
     head = [
@@ -31,7 +96,8 @@ def describe(result: JointResult) -> str:
         head.append(f"{result.snaps} times a nearly unloaded pin was released or snapped to a new place.")
     if not len(result):
         return "\n".join(head)
-    return "\n".join([*head, "", forces_table(result), "", largest_table(result)])
+    parts = [*head, "", forces_table(result), "", largest_table(result)]
+    return "\n".join([*parts, *margin_lines(judged), *fatigue_lines(judged)])
 
 
 def forces_table(result: JointResult) -> str:
@@ -76,6 +142,51 @@ def largest_table(result: JointResult) -> str:
     columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
     columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
     return table(columns)
+
+
+def margin_lines(judged: Judged) -> list[str]:
+    """Return a table of the known margins, the smallest first; no line if none is known."""
+    known = [each for each in judged.margins if math.isfinite(each.margin.margin)]
+    if not known:
+        return []
+    unit = joint_units(judged.result.joint)["traction"]
+    cells = [
+        (
+            f"{pin} in {plate}, {row.subject}", f"{unit.text(row.value, 4)} of {unit.text(row.allowable, 4)}",
+            f"{row.margin:+.2f}", f"load point {point_name(row.load_point)}, {row.remark}",
+        )
+        for pin, plate, row in known[:MOST_LISTED]
+    ]  # fmt: skip
+    head = "margins of safety over all load points, allowable/value - 1, near the holes and in the pins:"
+    return ["", head, *outputs.aligned(cells, "lrrl"), *_left_out(len(known), "larger margins")]
+
+
+def fatigue_lines(judged: Judged) -> list[str]:
+    """Return a table of the damage at all pins, the largest first; no line unless the fatigue was asked for."""
+    how = judged.how
+    if how is None:
+        return []
+    if judged.reason:
+        return ["", f"fatigue: not known, {judged.reason}"]
+    over, length = judged.over, joint_units(judged.result.joint)["length"]
+    cells = []
+    for pin, plate, found in judged.damages[:MOST_LISTED]:
+        spot, owner = found.hot_spot, owner_of(found.problem, found.body)
+        name = f"{pin} in {plate}, {'hole' if found.body == 'plate' else owner}, {criterion_title(found.criterion)}"
+        if math.isnan(spot.theta):
+            cells.append((name, "no damage", "", ""))
+            continue
+        median = f", median {spot.life * 10.0**found.shift:.4g}" if found.shift else ""
+        below = "" if spot.depth == 0.0 else f", {length.text(spot.depth, 3)} below the edge"
+        where = f"at {angles.from_bottom(spot.theta):z.2f} deg{below}"
+        mark = over_yield_words(over.get((pin, plate), {}), owner)
+        cells.append((name, f"life {spot.life:.4g} {how.passes}{median}", f"damage {spot.damage:.4g}", where + mark))
+    head = f"fatigue over {fatigue.assessment_words(how)}, with the stresses at the load points:"
+    return ["", head, *outputs.aligned(cells, "lrrl"), *_left_out(len(judged.damages), "longer lives")]
+
+
+def _left_out(count: int, words: str) -> list[str]:
+    return [f"  ... {count - MOST_LISTED} with {words} ..."] if count > MOST_LISTED else []
 
 
 def contact_row(result: JointResult, place: int) -> dict[str, Any]:
@@ -209,23 +320,66 @@ JOINT_STATE = (
 )  # fmt: skip
 """Outputs of a state of a joint."""
 
+NAMES = (Output("pin", "text"), Output("plate", "text"))
+"""Outputs of something where a pin goes through a plate."""
+
+BODY = (*NAMES, *fatigue.DAMAGE, Output("over_yield", optional=True))
+"""Outputs of the damage of a plate or of a pin, where the pin goes through the plate."""
+
+
+def _margins(judged: Judged) -> list[dict[str, Any]]:
+    """The margins, the smallest first."""
+    rows = [each.margin for each in judged.margins]
+    problems = [judged.result[-1][each.pin, each.plate].problem for each in judged.margins]
+    found = []
+    for at, problem in zip(judged.margins, problems, strict=True):
+        unit, is_least = units(problem)[at.margin.kind], at.margin is smallest_margin(rows)
+        row = margins.MarginRow(at.margin, problem, unit, is_least, None)
+        found.append(outputs.document(NAMES, at, {}) | outputs.document(margins.ROW, row, {}))
+    return found
+
+
+def _bodies(judged: Judged) -> list[dict[str, Any]]:
+    """The damage of plates and pins, the largest first."""
+    found = []
+    for at in judged.damages:
+        over = judged.over[at.pin, at.plate].get(owner_of(at.found.problem, at.found.body))
+        body = outputs.document(fatigue.DAMAGE, at.found, units(at.found.problem))
+        found.append(outputs.document(NAMES, at, {}) | body | {"over_yield": over})
+    return found
+
+
 JOINT = (
     Output(
         "units", form=map_of(TEXT, "unit of each kind of quantity"),
-        of=lambda result: {name: joint_units(result.joint)[kind].name for name, kind in KINDS.items()},
+        of=lambda judged: {name: joint_units(judged.result.joint)[kind].name for name, kind in KINDS.items()},
     ),
-    Output("nodes", "whole"),
+    Output("nodes", "whole", lambda judged: judged.result.nodes),
     Output(
         "harmonics", form=map_of(WHOLE, "highest harmonic of the holes of each plate"),
-        of=lambda result: dict(zip((each.name for each in result.joint.plates), result.harmonics, strict=True)),
+        of=lambda judged: dict(
+            zip((each.name for each in judged.result.joint.plates), judged.result.harmonics, strict=True)
+        ),
     ),
-    Output("snaps", "whole"),
-    Output("seconds"),
+    Output("snaps", "whole", lambda judged: judged.result.snaps),
+    Output("seconds", of=lambda judged: judged.result.seconds),
     Output(
         "largest", "list",
-        lambda result: [contact_row(result, place) for place in range(len(result.joint.sections) * bool(len(result)))],
+        lambda judged: [
+            contact_row(judged.result, place)
+            for place in range(len(judged.result.joint.sections) * bool(len(judged.result)))
+        ],
         parts=LARGEST,
     ),
-    Output("states", "list", parts=JOINT_STATE),
+    Output("margins", of=_margins, form=list_of(schema_of((*NAMES, *margins.ROW)))),
+    Output(
+        "fatigue", of=lambda judged: None if judged.how is None else judged, optional=True,
+        parts=(
+            Output("how", of=lambda judged: judged.how, parts=fatigue.HOW),
+            Output("error", "text", lambda judged: judged.reason or None, optional=True),
+            Output("bodies", of=_bodies, form=list_of(schema_of(BODY))),
+        ),
+    ),
+    Output("states", "list", lambda judged: judged.result.states, parts=JOINT_STATE),
 )  # fmt: skip
-"""Outputs of the result of a joint."""
+"""Outputs of a :class:`Judged` joint."""

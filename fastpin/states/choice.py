@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, instances, items, number, places_of
 from fastpin.model.history import LoadHistory
+from fastpin.model.problem import Problem
 from fastpin.states.cycles import Cycle, consecutive_cycles
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
@@ -112,9 +114,20 @@ def stops_of_one_problem(states: Sequence[State], least: int = 2) -> list[State]
     if len(stops) < least:
         least_words = "the stops of a cycle, at least two" if least > 1 else "at least one state"
         raise InputError("states", f"must be {least_words}, not {len(stops)}")
-    if any(state.problem != stops[0].problem for state in stops):
+    if not share_problem(stops):
         raise InputError("states", "must be states of one problem")
     return stops
+
+
+def share_problem(states: Sequence[State]) -> bool:
+    """Whether the states are of one problem. What other pins of a joint do to the hole differs from state to state."""
+    first, *others = dict.fromkeys(state.problem for state in states)
+    return all(_without_others(other) == _without_others(first) for other in others)
+
+
+def _without_others(problem: Problem) -> Problem:
+    body = problem.plate_body.without_others
+    return problem if body is problem.plate_body else replace(problem, plate_body=body)
 
 
 def states_between(states: Sequence[State], first: float, last: float) -> list[State]:

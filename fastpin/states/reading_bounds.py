@@ -97,7 +97,9 @@ class Bounds:
         self._problem, self._grid, self._names = problem, grid, names - set(NUMBERS)
         self._friction, self._coupled = problem.friction_at(grid.theta), not _coupling(problem, grid).is_smooth
         self._found: dict[str, list[Pair]] = {name: [] for name in self._names}
-        self._stresses = StressBounds(problem, grid, names)
+        # What other pins of a joint do to the hole differs from state to state: its stresses have no bounds.
+        is_alone = problem.plate_body.without_others is problem.plate_body
+        self._stresses = StressBounds(problem, grid, names if is_alone else set())
         self._waiting: list[tuple[list[Nodal], np.ndarray]] = []  # until so many states make the matrices worth while
         self._count = 0
 

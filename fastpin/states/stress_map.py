@@ -88,9 +88,11 @@ class StressMap:
         return np.asarray(total)
 
 
-def share_grids(states: Sequence[State]) -> bool:
-    """Whether all states have the same nodes, and so have their seats."""
+def share_map(states: Sequence[State]) -> bool:
+    """Whether one linear function gives the stresses of all states: they have the same bodies and nodes."""
     first = states[0]
+    if any(state.problem != first.problem for state in states):  # what other pins do to a hole differs
+        return False
     pairs = ((each, other) for state in states for each, other in ((state, first), (state.seat, first.seat)))
     return all(one is two if one is None or two is None else np.array_equal(one.theta, two.theta) for one, two in pairs)
 

@@ -12,6 +12,7 @@ from fastpin import CaseFileError, casefile, figures
 from fastpin.assess.outputs import whole_document
 from fastpin.cli.main import main
 from fastpin.joints import JOINT_EXAMPLE, JointResult, parse_joint, solve_joint
+from fastpin.model import FatigueAssessment
 from fastpin.report import joints as report
 from fastpin.report import json_schema
 
@@ -95,12 +96,26 @@ def test_values_for_each_plate_and_parts_of_an_outline_are_read() -> None:
         ("[joint]", "[joints]", 4, "unknown section [joints]"),
         ("nodes = 24", "nodes = 2", 5, "nodes: must be a whole number from 16 to 720, not 2"),
         ("[20e-3, 0.0]", "[20e-3]", 14, "at: must be a point [x, y], not [0.02]"),
+        ("[joint]", '[fatigue]\nover = "cycles"\n[joint]', 5, 'over: must be "history" or "cycle"'),
+        (
+            "[joint]",
+            "[fatigue]\nlenght = 1e-4\n[joint]",
+            5,
+            'unknown key "lenght" in [fatigue], did you mean "length"?',
+        ),
+        ("[joint]", "[fatigue]\n[joint]", 4, "needs fatigue_strength"),
     ],
 )
 def test_a_fault_has_its_line(old: str, new: str, line: int, words: str) -> None:
     assert old in SHEETS
     found = faults(SHEETS.replace(old, new))
     assert any(words in sentence and (line in (0, where)) for where, sentence in found), found
+
+
+def test_a_cycle_of_fatigue_needs_repeated_corners() -> None:
+    asked = SHEETS.replace('"aluminium"', '"2024-T3"') + '[fatigue]\nover = "cycle"\n'
+    assert faults(asked) == [(28, "over: the history has no cycles: repeat = 2 in [joint] repeats its corners")]
+    assert parse_joint(asked.replace("[joint]", "[joint]\nrepeat = 2")).fatigue == FatigueAssessment(over="cycle")
 
 
 def test_missing_blocks_are_told_together() -> None:
@@ -114,8 +129,9 @@ def test_a_joint_file_is_no_case_file() -> None:
 
 
 def test_text_and_json_tell_the_same_numbers() -> None:
-    result = solved()
-    text, document = report.describe(result), whole_document(report.JOINT, result, {}, title="two bolts")
+    judged = report.judged(solved())
+    text, document = report.describe(judged), whole_document(report.JOINT, judged, {}, title="two bolts")
+    assert "fatigue" not in text
     assert "2 pins, 1 plates, 24 nodes a contact" in text
     assert json.loads(json.dumps(document, allow_nan=False)) == document
     Draft202012Validator(json_schema("joint")).validate(document)
@@ -127,6 +143,30 @@ def test_text_and_json_tell_the_same_numbers() -> None:
     assert row["hoop"] == max(state["contacts"][0]["peak_hoop_stress"]["value"] for state in document["states"])
     assert f"{1e-6 * row['pressure']:.5g}" in text
     assert (report.UNRESOLVED in text) == any(not each["resolved"] for each in document["largest"])
+
+
+def _words(text: str) -> str:
+    """A text without the spaces that align its columns."""
+    return " ".join(text.split())
+
+
+def test_text_and_json_tell_the_same_lives_and_margins() -> None:
+    case = parse_joint(SHEETS.replace('"aluminium"', '"2024-T3"').replace("4e3", "8e3") + "[fatigue]\n")
+    judged = report.judged(solve_joint(case.joint, case.corners, nodes=24), case.fatigue)
+    text, document = _words(report.describe(judged)), whole_document(report.JOINT, judged, {}, title="two bolts")
+    Draft202012Validator(json_schema("joint")).validate(document)
+    first, least = document["fatigue"]["bodies"][0], document["margins"][0]
+    assert (first["pin"], first["plate"], first["body"]) == ("A", "sheet", "plate")
+    assert first["life"] == min(each["life"] for each in document["fatigue"]["bodies"])
+    assert f"A in sheet, hole, Smith-Watson-Topper life {first['life']:.4g} spectra" in text
+    assert f"stresses reach {first['over_yield']:.3g} times the yield strength" in text
+    assert first["over_yield"] == least["value"] / least["allowable"] == pytest.approx(1.0 / (1.0 + least["margin"]))
+    assert least["smallest"]
+    assert (
+        f"A in sheet, plate: yield, von Mises {1e-6 * least['value']:.4g} MPa of 379 MPa {least['margin']:+.2f}" in text
+    )
+    unfinished = report.judged(judged.result, case.fatigue, is_complete=False)
+    assert "fatigue: not known, the history has not come to its end" in report.describe(unfinished)
 
 
 def test_figures_are_drawn(tmp_path: Path) -> None:
