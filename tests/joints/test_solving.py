@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -86,31 +87,105 @@ def test_two_pins_with_interference() -> None:
     assert dissipated(result, 2) == pytest.approx(0.01205, abs=6e-5)
 
 
-def lap(clearances: tuple[float, ...], friction: float, load: float) -> Joint:
-    """A single lap of three steel pins in strips: width 8, pitch 6, edge 4, 12 to the held end, all in radii."""
-    skin = JointPlate("skin", ALUMINIUM, 1.0, rectangle((-18.0, 10.0), (-4.0, 4.0)), {"left": "both"})
-    strap = JointPlate("strap", ALUMINIUM, 1.0, rectangle((-10.0, 18.0), (-4.0, 4.0)), {"right": "both"}, moves="x")
+def lap(clearances: tuple[float, ...], friction: float) -> Joint:
+    """A single lap of steel pins in strips: width 8, pitch 6, edge 4, 12 to the held end, all in radii."""
+    half = 3.0 * (len(clearances) - 1)
+    skin = JointPlate("skin", ALUMINIUM, 1.0, rectangle((-half - 12.0, half + 4.0), (-4.0, 4.0)), {"left": "both"})
+    strap = JointPlate(
+        "strap", ALUMINIUM, 1.0, rectangle((-half - 4.0, half + 12.0), (-4.0, 4.0)), {"right": "both"}, moves="x"
+    )
     soft = tate_rosenfeld(2.0, STEEL, (ALUMINIUM, 1.0), (ALUMINIUM, 1.0))
     pins = [
-        JointPin(name, at, STEEL, 1.0, ("skin", "strap"), each * BETA * load, friction, soft)
-        for name, at, each in zip("ABC", (-6.0, 0.0, 6.0), clearances, strict=True)
+        JointPin(f"p{k}", -half + 6.0 * k, STEEL, 1.0, ("skin", "strap"), each * BETA * FORCE, friction, soft)
+        for k, each in enumerate(clearances)
     ]
     return Joint((skin, strap), tuple(pins))
 
 
 @pytest.mark.survey
 def test_a_lap_of_three_pins_has_the_shares_of_finite_elements() -> None:
-    equal = solve_joint(lap((0.1, 0.1, 0.1), 0.3, FORCE), [{"strap.x": 3 * FORCE}, {"strap.x": 0.3 * FORCE}], nodes=64)
+    equal = solve_joint(lap((0.1, 0.1, 0.1), 0.3), [{"strap.x": 3 * FORCE}, {"strap.x": 0.3 * FORCE}], nodes=64)
     forces = [state.forces[::2, 0] / FORCE for state in equal]
     np.testing.assert_allclose(forces[0], [1.1097, 0.7806, 1.1097], atol=5e-4)
     np.testing.assert_allclose(forces[1], [0.10658, 0.0868, 0.10658], atol=4e-4)
     assert [state.moved[1, 0] / (FORCE * BETA) for state in equal] == pytest.approx([3.1845, 0.53543], abs=4e-4)
     assert [dissipated(equal, k) for k in (0, 1)] == pytest.approx([0.02006, 0.02634], abs=1e-4)
     assert [hoop_at_top(equal, k) for k in (0, 1)] == pytest.approx([1.544, 0.14011], abs=1e-3)
-    loose = solve_joint(lap((0.1, 0.3, 0.1), 0.3, FORCE), [{"strap.x": 3 * FORCE}], nodes=64)
+    loose = solve_joint(lap((0.1, 0.3, 0.1), 0.3), [{"strap.x": 3 * FORCE}], nodes=64)
     np.testing.assert_allclose(loose[0].forces[::2, 0] / FORCE, [1.4324, 0.1353, 1.4324], atol=6e-4)
-    neat = solve_joint(lap((0.0, 0.0, 0.0), 0.0, FORCE), [{"strap.x": 3 * FORCE}], nodes=64)
+    neat = solve_joint(lap((0.0, 0.0, 0.0), 0.0), [{"strap.x": 3 * FORCE}], nodes=64)
     np.testing.assert_allclose(neat[0].forces[::2, 0] / FORCE, [1.10200, 0.79600, 1.10200], atol=2e-3)
+
+
+@pytest.mark.survey
+def test_a_lap_under_reversed_load_and_after_cycles_has_the_forces_of_finite_elements() -> None:
+    joint, there, back = lap((0.1, 0.1, 0.1), 0.3), {"strap.x": 3 * FORCE}, {"strap.x": 0.3 * FORCE}
+    reversed_ = solve_joint(joint, [there, {"strap.x": -3 * FORCE}], nodes=64)
+    np.testing.assert_allclose(reversed_[1].forces[::2, 0] / FORCE, [-1.1261, -0.7478, -1.1261], atol=5e-4)
+    assert peaks(reversed_, 1)[:3:2] == pytest.approx([0.7788, 0.5190], abs=1e-3)
+    assert hoop_at_top(reversed_, 1) == pytest.approx(-0.5390, abs=3e-4)
+    assert dissipated(reversed_, 1) == pytest.approx(0.03899, abs=4e-5)
+    assert reversed_[1].moved[1, 0] / (FORCE * BETA) == pytest.approx(-2.55567, abs=2e-5)
+    cycles = solve_joint(joint, [*[there, back] * 3, there], nodes=64)
+    np.testing.assert_allclose(cycles[6].forces[::2, 0] / FORCE, [1.1096, 0.7807, 1.1096], atol=5e-4)
+    assert dissipated(cycles, 6) == pytest.approx(0.09642, abs=2e-4)
+    assert cycles[6].moved[1, 0] / (FORCE * BETA) == pytest.approx(3.18463, abs=1.5e-4)
+
+
+@pytest.mark.survey
+def test_a_lap_of_five_pins_has_the_forces_of_finite_elements() -> None:
+    result = solve_joint(lap((0.1,) * 5, 0.3), [{"strap.x": 5 * FORCE}], nodes=64, harmonics=12)
+    np.testing.assert_allclose(
+        result[0].forces[::2, 0] / FORCE, [1.55282, 0.70637, 0.48161, 0.70637, 1.55282], atol=2e-4
+    )
+    assert peaks(result, 0)[:3:2] == pytest.approx([0.831, 0.4204], abs=3e-3)
+    assert hoop_at_top(result, 0) == pytest.approx(2.5589, abs=3e-3)
+    assert dissipated(result, 0) == pytest.approx(0.05770, abs=8e-5)
+    assert result[0].moved[1, 0] / (FORCE * BETA) == pytest.approx(5.82644, abs=1e-4)
+
+
+@pytest.mark.survey
+def test_titanium_pins_in_unlike_plates_have_the_forces_of_finite_elements() -> None:
+    titanium = Material(110e9, 0.31)
+    beta = MaterialPair(titanium, ALUMINIUM, "stress").beta_star
+    skin, strap = (
+        replace(plate, thickness=2.0, material=each)
+        for plate, each in zip(lap((0.0, 0.0), 0.0).plates, (ALUMINIUM, STEEL), strict=True)
+    )
+    pins = [
+        JointPin(f"p{k}", at, titanium, 1.0, ("skin", "strap"), 0.2 * beta * FORCE, 0.2, 0.05 * beta)
+        for k, at in enumerate((-3.0, 3.0))
+    ]
+    loads = [{"strap.x": 4 * FORCE}, {"strap.x": 0.4 * FORCE}]
+    result = solve_joint(Joint((skin, strap), tuple(pins)), loads, nodes=64)
+    np.testing.assert_allclose(
+        [state.forces[::2, 0] / FORCE for state in result], [[2.2531, 1.7469], [0.2174, 0.1826]], atol=5e-4
+    )
+    assert peaks(result, 0)[::2] == pytest.approx([0.6282, 0.5524], abs=6e-4)
+    assert peaks(result, 1)[::2] == pytest.approx([0.1691, 0.1555], abs=9e-4)
+    assert [hoop_at_top(result, k) for k in (0, 1)] == pytest.approx([1.0659, 0.10100], abs=4e-4)
+    assert [2.0 * dissipated(result, k) * BETA / beta for k in (0, 1)] == pytest.approx([0.006344, 0.00829], abs=3e-5)
+    moved = [state.moved[1, 0] / (FORCE * beta) for state in result]
+    assert moved == pytest.approx([1.6436, 0.55142], abs=1e-4)
+
+
+@pytest.mark.survey
+def test_pins_off_the_axis_pass_moments_as_finite_elements_say() -> None:
+    skin, strap = lap((0.0, 0.0), 0.0).plates
+    plates = (
+        replace(skin, outline=rectangle((-12.0, 7.0), (-4.0, 4.0))),
+        replace(strap, outline=rectangle((-7.0, 12.0), (-4.0, 4.0))),
+    )
+    pins = [
+        JointPin(f"p{k}", at, STEEL, 1.0, ("skin", "strap"), each * BETA * FORCE, 0.3, 0.07 * BETA)
+        for k, (at, each) in enumerate(((-3.0 + 0.7j, 0.1), (3.0 + 0.7j, 0.2)))
+    ]
+    state = solve_joint(Joint(plates, tuple(pins)), [{"strap.x": 2 * FORCE}], nodes=96)[0]
+    np.testing.assert_allclose(state.forces[0] / FORCE, [1.2351, -0.1570], atol=1e-4)
+    np.testing.assert_allclose(state.moments[::2] / FORCE, [0.0846, -0.0562], atol=2e-4)
+    found = [float(state.contacts[k].pressure.max()) / FORCE for k in (0, 2)]
+    assert found == pytest.approx([0.6666, 0.4974], abs=3e-4)
+    assert sum(each.dissipation for each in state.contacts) / (FORCE * FORCE * BETA) == pytest.approx(0.01205, abs=1e-5)
 
 
 @pytest.mark.gate
