@@ -11,6 +11,7 @@ from fastpin.assess import outputs
 from fastpin.cli import terminal
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.errors import InputError
+from fastpin.model.checks import whole_number
 from fastpin.solver import Interrupted, SolveError
 
 JUDGED = "margins and fatigue"
@@ -28,6 +29,10 @@ def run(options: argparse.Namespace) -> int:
     terminal.check_outputs(
         {"--plot": options.plot, "--shares": options.shares, "--json": options.json}, ("--plot", "--shares")
     )
+    if options.at is not None:
+        whole_number("--at", options.at, 1, len(case.corners))
+        if options.plot is None:
+            raise InputError("--at", "chooses the load point of a figure: it needs --plot FILE")
     nodes = case.nodes if options.nodes is None else options.nodes
     code = terminal.EXIT_OK
     try:
@@ -45,7 +50,8 @@ def run(options: argparse.Namespace) -> int:
         if result is None or not len(result):
             return code
         terminal.say(f"note: {len(result)} of {len(case.corners)} load points were reached", file=sys.stderr)
-    draws = {options.plot: figures.plot_joint, options.shares: figures.plot_shares}
+    last = min(options.at or len(result), len(result))
+    draws = {options.plot: partial(figures.plot_joint, state=last - 1), options.shares: figures.plot_shares}
     files = [(name, partial(draw, result, title=case.title)) for name, draw in draws.items()]
     with Bar(1.0, JUDGED) as bar:
         judged = report.joints.judged(result, case.fatigue, not code, progress_to(bar))

@@ -406,7 +406,8 @@ def add_joint(commands: Any) -> None:
     _option(joint, "file", None, "joint file (TOML): plates, pins and loads", Path, nargs="?")
     _switch(joint, "--example", "print a commented joint file")
     _option(joint, "--nodes", "N", "nodes of each contact (default: those of the file)", literal)
-    _option(joint, "--plot", "FILE", "draw all holes at the last load point (png, pdf, svg)", Path)
+    _option(joint, "--plot", "FILE", "draw all holes at a load point (png, pdf, svg)", Path)
+    _option(joint, "--at", "N", "load point in --plot (default: the last)", literal)
     _option(joint, "--shares", "FILE", "draw the force of each pin at all load points", Path)
     _add_json(joint, "write all states as JSON")
 

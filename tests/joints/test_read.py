@@ -187,6 +187,21 @@ def test_the_command_solves_a_file(tmp_path: Path, capsys: pytest.CaptureFixture
     assert json.loads(out.read_text())["nodes"] == 16
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--at", "3"], "--at: must be a whole number from 1 to 2, not 3"),
+        (["--at", "1"], "--at: chooses the load point of"),
+    ],
+)
+def test_the_command_refuses_a_load_point_that_is_not_drawn(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], words: str
+) -> None:
+    (tmp_path / "joint.toml").write_text(SHEETS)
+    assert main(["joint", str(tmp_path / "joint.toml"), *options]) == 2
+    assert words in capsys.readouterr().err
+
+
 def test_the_command_prints_its_example_and_wants_a_file(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["joint", "--example"]) == 0
     assert capsys.readouterr().out == JOINT_EXAMPLE
