@@ -34,6 +34,15 @@ def test_files_and_folders_named_in_contributing_exist() -> None:
         assert any((place / name).exists() for place in places), name
 
 
+def test_names_stand_in_the_files_that_contributing_names() -> None:
+    named = re.findall(r"`(?:\w+\.)?(\w+)`\s+(?:of|in)\s+`([\w/]+\.py)`", CONTRIBUTING)
+    assert len(named) > 40
+    places = (ROOT, ROOT / "fastpin", ROOT / "tests")
+    for name, file in named:
+        (text,) = (path.read_text("utf-8") for place in places if (path := place / file).exists())
+        assert re.search(rf"^\s*(?:(?:def|class) )?{name}\b", text, re.MULTILINE), f"{name} of {file}"
+
+
 def test_every_dependency_has_its_reason() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     (table,) = re.findall(r"^## Dependencies\n(.*?)^## ", CONTRIBUTING, re.DOTALL | re.MULTILINE)
