@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from fastpin.casefile.lug import LugFile, parse_lug, read_lug
-from fastpin.errors import CaseFileError
 from fastpin.lugs.outline import Hole
+from tests.support.faults import faults_of
 from tests.support.lugs import mesh_edge
 
 HEAD = """\
@@ -40,9 +40,7 @@ def read(file: str = "edge.csv", keys: str = "", more: str = "") -> LugFile:
 
 
 def faults(file: str = "edge.csv", keys: str = "", more: str = "") -> list[tuple[int, str]]:
-    with pytest.raises(CaseFileError) as caught:
-        read(file, keys, more)
-    return caught.value.problems
+    return faults_of(read, file, keys, more)
 
 
 @pytest.mark.parametrize(
@@ -176,9 +174,7 @@ def test_faults_of_points() -> None:
 def test_faults_of_named_sides(at: str, message: str) -> None:
     write_points(10.0 * mesh_edge(40))
     text = HEAD.format(file="edge.csv", keys='unit = "mm"').replace("[0.0, 0.1]", at)
-    with pytest.raises(CaseFileError) as caught:
-        parse_lug(text)
-    assert (9, message) in caught.value.problems
+    assert (9, message) in faults_of(parse_lug, text)
 
 
 def test_an_svg_file_needs_a_unit() -> None:
@@ -190,7 +186,6 @@ def test_an_svg_file_needs_a_unit() -> None:
 
 def test_keys_of_a_file_need_one() -> None:
     text = HEAD.replace('file = "{file}"\n{keys}', "start = [0, 0]\nunit = 3")
-    with pytest.raises(CaseFileError) as caught:
-        parse_lug(text)
-    assert (6, "unit: is for a file of the outline only") in caught.value.problems
-    assert (9, "at: is for a file of the outline only; a part ends at `to`") in caught.value.problems
+    found = faults_of(parse_lug, text)
+    assert (6, "unit: is for a file of the outline only") in found
+    assert (9, "at: is for a file of the outline only; a part ends at `to`") in found

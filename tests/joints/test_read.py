@@ -15,6 +15,7 @@ from fastpin.joints import JOINT_EXAMPLE, JointResult, parse_joint, solve_joint
 from fastpin.model import FatigueAssessment
 from fastpin.report import joints as report
 from fastpin.report import json_schema
+from tests.support.faults import faults_of
 
 SHEETS = """
 title = "two bolts"
@@ -48,12 +49,6 @@ friction = 0.2
 def solved() -> JointResult:
     case = parse_joint(SHEETS)
     return solve_joint(case.joint, case.corners, nodes=case.nodes)
-
-
-def faults(text: str) -> list[tuple[int, str]]:
-    with pytest.raises(CaseFileError) as caught:
-        parse_joint(text)
-    return list(caught.value.problems)
 
 
 def test_the_example_is_a_lap_of_three_bolts() -> None:
@@ -108,7 +103,7 @@ def test_values_for_each_plate_and_parts_of_an_outline_are_read() -> None:
 )
 def test_a_fault_has_its_line(old: str, new: str, line: int, words: str) -> None:
     assert old in SHEETS
-    found = faults(SHEETS.replace(old, new))
+    found = faults_of(parse_joint, SHEETS.replace(old, new))
     assert any(words in sentence and (line in (0, where)) for where, sentence in found), found
 
 
@@ -119,7 +114,7 @@ def test_a_cycle_of_fatigue_needs_repeated_corners() -> None:
 
 
 def test_missing_blocks_are_told_together() -> None:
-    words = [sentence for _, sentence in faults("[joint]\n")]
+    words = [sentence for _, sentence in faults_of(parse_joint, "[joint]\n")]
     assert words == [f"[[{name}]] blocks are missing" for name in ("plate", "pin", "load")]
 
 

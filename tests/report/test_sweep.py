@@ -13,6 +13,7 @@ from fastpin.studies import parse_plan, sweep
 from fastpin.studies.plan import Plan
 from fastpin.studies.variation import field_words
 from tests.support.plans import FRICTION, MAP, made_up_rows
+from tests.support.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -77,9 +78,7 @@ def test_a_restricted_plan_has_the_points_with_given_values(plan: Plan, rows: li
     ],
 )
 def test_a_plan_is_restricted_to_its_values_only(where: dict[str, Any], words: str, plan: Plan) -> None:
-    with pytest.raises(InputError) as raised:
-        restricted(plan, where)
-    assert str(raised.value) == words
+    assert str(refused(restricted, plan, where)) == words
 
 
 def test_numbers_of_a_map(plan: Plan, rows: list[dict[str, Any]]) -> None:

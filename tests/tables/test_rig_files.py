@@ -9,6 +9,7 @@ import pytest
 from fastpin import CaseFileError, InputError, LoadHistory
 from fastpin.model import LOADS
 from fastpin.tables.load_units import INCH, POUND
+from tests.support.faults import faults_of
 from tests.support.times import growth
 
 
@@ -96,9 +97,7 @@ def test_columns_units_and_signs(text, columns, thickness, found, tmp_path):
     ],
 )  # fmt: skip
 def test_faults_name_line_column_and_what_is_allowed(text, columns, thickness, line, words, tmp_path):
-    with pytest.raises(CaseFileError) as caught:
-        loads(tmp_path, text, columns, thickness)
-    ((place, sentence),) = caught.value.problems
+    ((place, sentence),) = faults_of(loads, tmp_path, text, columns, thickness)
     assert place == line
     assert words in sentence
 

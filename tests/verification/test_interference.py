@@ -4,7 +4,6 @@
 """
 
 import math
-import pickle
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.verification import interference
 from fastpin.verification.comparisons import all_round_difference, event_load
 from fastpin.verification.joint_rows import BRONZE
+from tests.support.refusals import refused
 
 LIKE = MaterialPair(Material(70e9, 0.3), Material(70e9, 0.3))
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
@@ -254,10 +254,7 @@ def test_a_held_ring_is_stiffer_than_a_plate_and_a_free_ring_softer():
 def test_loads_without_a_closed_form(field, load):
     problem = fit("like, body load", 0.3)
     theta = "round" if field == "theta" else 0.0
-    with pytest.raises(InputError) as caught:
-        interference.stuck_tractions(problem, theta, load)
-    assert caught.value.field == field
-    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+    assert refused(interference.stuck_tractions, problem, theta, load).field == field
 
 
 def test_no_moment_without_friction():

@@ -24,6 +24,7 @@ from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.ply import PlyStrengths
 from fastpin.studies.plan import parse_plan, read_plan
+from tests.support.faults import fault_of, faults_of
 from tests.support.tiers import gate
 
 PAIR = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
@@ -80,10 +81,7 @@ def unknown_key(line: str, typed: str, answer: str) -> tuple[str, str, str]:
 )
 def test_an_unknown_key_is_answered_with_the_key_that_is_meant(line: str, typed: str, sentence: str) -> None:
     assert EXAMPLE.count(line) >= 1
-    with pytest.raises(CaseFileError) as error:
-        parse_case(EXAMPLE.replace(line, typed, 1))
-    (fault,) = error.value.problems
-    assert fault[1].startswith(sentence)
+    assert fault_of(parse_case, EXAMPLE.replace(line, typed, 1))[1].startswith(sentence)
 
 
 @pytest.mark.parametrize(
@@ -97,9 +95,7 @@ def test_an_unknown_key_is_answered_with_the_key_that_is_meant(line: str, typed:
     ],
 )
 def test_an_unknown_field_of_a_plan_is_answered_with_the_one_that_is_meant(field: str, sentence: str) -> None:
-    with pytest.raises(CaseFileError) as error:
-        parse_plan(f"[grid]\n{field} = [0.1, 0.2]\n")
-    assert error.value.problems[0][1].startswith(sentence)
+    assert faults_of(parse_plan, f"[grid]\n{field} = [0.1, 0.2]\n")[0][1].startswith(sentence)
 
 
 PLAN_ROOTS = [
@@ -117,9 +113,7 @@ PLAN_ROOTS = [
 
 @pytest.mark.parametrize(("text", "sentence"), PLAN_ROOTS)
 def test_an_unknown_part_of_a_plan_is_named_with_what_is_allowed(text: str, sentence: str) -> None:
-    with pytest.raises(CaseFileError) as error:
-        parse_plan(text)
-    assert error.value.problems[0][1].startswith(sentence)
+    assert faults_of(parse_plan, text)[0][1].startswith(sentence)
 
 
 @pytest.mark.parametrize(
