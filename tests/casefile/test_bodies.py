@@ -198,36 +198,6 @@ def test_a_fault_is_told_once_with_its_line(bodies, line, words):
     assert found_line == line
 
 
-HOLLOW = "[pin_body]\nbore_radius = 5e-3\n"
-GAUGED = 'drive = "ux"\ngauge_radius = 3e-2'
-TOO_FAR = "gauge_radius: must be at most the outer radius 0.02, not 0.03"
-
-
-@pytest.mark.parametrize(
-    ("contact", "bodies", "words"),
-    [
-        ('pin_load = "body"', HOLLOW, "pin_load: a hollow pin has its load in its own body"),
-        (
-            'rotation = "fixed"\nhub_radius = 4e-3',
-            HOLLOW,
-            "hub_radius: must be at least the bore radius 0.005, not 0.004",
-        ),
-        (GAUGED, "[plate_body]\nouter_radius = 2e-2\n", TOO_FAR),
-        (GAUGED, BUSH + "ring_outer_radius = 2e-2\n", TOO_FAR),
-        (
-            GAUGED,
-            "[plate_body]\nreaction = [0, 0.1]\n",
-            "gauge_radius: a plate with a reaction at a point has no gauge circle",
-        ),
-    ],
-)
-def test_faults_of_the_contact_beside_bodies_stand_in_contact(contact, bodies, words):
-    head = HEAD.replace("friction = 0.3", f"friction = 0.3\n{contact}")
-    line, text = the_fault(bodies, head=head)
-    assert text.startswith(words)
-    assert head.splitlines()[line + head.count("\n") - 1].split(" =")[0] == words.split(":")[0]
-
-
 GOOD = soft_plate().document()
 
 

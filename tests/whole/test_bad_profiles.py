@@ -9,13 +9,9 @@ import numpy as np
 import pytest
 
 from fastpin import InputError, Problem
-from fastpin.casefile import parse_case
-from fastpin.cli.main import main
 from fastpin.model import InitialGap, Profile
-from fastpin.studies import parse_plan
 from tests.support.case_texts import PRESSED
-from tests.support.faults import faults_of
-from tests.support.refusals import refused
+from tests.support.everywhere import one_sentence
 from tests.support.samples import PAIR
 
 
@@ -53,23 +49,14 @@ CASES: list[tuple[str, str, str, Callable[[], Any]]] = [
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]} {case[1]}")
-def test_a_wrong_profile_gets_the_same_sentence_everywhere(case: Any, tmp_path: Path, capsys: Any) -> None:
+def test_a_wrong_profile_gets_the_same_sentence_everywhere(case: Any, tmp_path: Path) -> None:
     field, value, word, in_python = case
     section, key = field.split(".")
-    named = f"{key}.{word}" if word else key
     text = PRESSED.replace("friction = 0.3", f"friction = {value}")
     if section == "gap":
         text = f"{PRESSED}\n[gap]\n{key} = {value}\n"
-    ((line, words),) = faults_of(parse_case, text)
-    reason = words.partition(": ")[2]
-    assert refused(in_python).reason == reason
-    assert words.startswith(f"{named}: ") or not word
-    (tmp_path / "case.toml").write_text(text)
-    assert main(["check", str(tmp_path / "case.toml")]) == 2
-    assert capsys.readouterr().err.rstrip().endswith(f"line {line}: {words}")
-    (tmp_path / "base.toml").write_text(PRESSED)
-    found = faults_of(parse_plan, f'case = "base.toml"\n[grid]\n{field} = [{value}]\n', folder=tmp_path)
-    assert [words for _, words in found] == [f"{section}.{named}: {reason}"]
+    _, words = one_sentence(in_python, section, text, PRESSED, f"[grid]\n{field} = [{value}]\n", tmp_path)
+    assert words.startswith(f"{key}.{word}: " if word else f"{key}: ")
 
 
 def test_functions_that_are_no_profiles_are_refused() -> None:
