@@ -146,39 +146,36 @@ def test_faults_of_a_laminate_have_lines(keys: str, line: int, words: str) -> No
     assert line in [where for where, _ in caught.value.problems]
 
 
-def test_only_the_plate_has_keys_of_a_laminate() -> None:
-    given = text("E = 7e10\nnu = 0.3").replace('material = "steel"', 'material = "steel"\nE1 = 3')
-    with pytest.raises(CaseFileError, match=r'unknown key "E1" in \[pin\]; it belongs in \[plate\]'):
-        parse_case(given)
+INFINITE = "must be an infinite plate if it is a laminate"
 
 
 @pytest.mark.parametrize(
-    ("more", "words"),
+    ("given", "words"),
     [
-        ('[plate_body]\nouter_radius = 9e-3\nsupport = "held"\n', "must be an infinite plate if it is a laminate"),
-        ("[plate_body]\nreaction = [0.0, 6e-2]\n", "must be an infinite plate if it is a laminate"),
-        ('[plate_body]\nmaterial = "steel"\nouter_radius = 4e-3\n', "must be an infinite plate if it is a laminate"),
+        (text(LAYUP, '[plate_body]\nouter_radius = 9e-3\nsupport = "held"\n'), INFINITE),
+        (text(LAYUP, "[plate_body]\nreaction = [0.0, 6e-2]\n"), INFINITE),
+        (text(LAYUP, '[plate_body]\nmaterial = "steel"\nouter_radius = 4e-3\n'), INFINITE),
         (
-            '[crack]\nfirst = 1e-4\nlast = 1e-3\nlaw = { law = "paris", C = 1e-11, m = 3 }\n',
+            text(LAYUP, '[crack]\nfirst = 1e-4\nlast = 1e-3\nlaw = { law = "paris", C = 1e-11, m = 3 }\n'),
             "body: the plate is a laminate",
         ),
-        ('[fatigue]\nbodies = "plate"\n', "bodies: the plate is a laminate, and a criterion of fatigue"),
+        (text(LAYUP, '[fatigue]\nbodies = "plate"\n'), "bodies: the plate is a laminate, and a criterion of fatigue"),
+        (
+            text("E = 7e10\nnu = 0.3").replace('material = "steel"', 'material = "steel"\nE1 = 3'),
+            r'unknown key "E1" in \[pin\]; it belongs in \[plate\]',
+        ),
+        (
+            text(f'layup = "[0]"\nply = {OWN}, Xt = 2e9, Xc = 1e9, Yt = 5e7, Yc = 2e8, S = 1e8 }}').replace(
+                "hole_radius = 3e-3\nclearance = 2e-5\n", "load_parameter = 0.1\n"
+            ),
+            "Xt: has no meaning with load_parameter",
+        ),
     ],
+    ids=["ring", "reaction", "bush", "crack", "fatigue", "pin", "without units"],
 )
-def test_sections_that_need_an_isotropic_plate(more: str, words: str) -> None:
+def test_what_does_not_go_with_a_laminate_is_refused(given: str, words: str) -> None:
     with pytest.raises(CaseFileError, match=words):
-        parse_case(text(LAYUP, more))
-
-
-def test_a_laminate_may_wear() -> None:
-    case = parse_case(text(LAYUP, "[wear]\ncoefficient = 1e-15\ncycles = 10\n") + "repeat = 10\n")
-    assert case.wear is not None
-
-
-def test_strengths_need_units() -> None:
-    given = text(f'layup = "[0]"\nply = {OWN}, Xt = 2e9, Xc = 1e9, Yt = 5e7, Yc = 2e8, S = 1e8 }}')
-    with pytest.raises(CaseFileError, match="Xt: has no meaning with load_parameter"):
-        parse_case(given.replace("hole_radius = 3e-3\nclearance = 2e-5\n", "load_parameter = 0.1\n"))
+        parse_case(given)
 
 
 def test_the_example_names_all_keys() -> None:

@@ -38,6 +38,30 @@ def faults(text: str) -> list[tuple[int, str]]:
     return faults_of(parse_lug, text)
 
 
+PARTS = """\
+[plate]
+nu = 0.3
+hole_radius = 1
+[outline]
+start = [-3, -3]
+[[part]]
+name = "bottom"
+to = [3, -3]
+[[part]]
+name = "right"
+to = [3, 3]
+[[part]]
+name = "arch"
+to = [-3, 3]
+through = [0, 5]
+[[part]]
+name = "left"
+to = [-3, -3]
+[[support]]
+parts = ["left"]
+"""
+
+
 def replaced(line: str, by: str) -> str:
     assert line in GOOD
     return GOOD.replace(line, by)
@@ -123,35 +147,12 @@ def test_the_example_names_every_key() -> None:
         (replaced("[plate]", "[[plate]]"), 2, "plate: must be a section [plate], not"),
         (GOOD + "[[part]]\nname = 'a'\n", 21, "[[part]]: has no meaning for a rectangle"),
         ("hole = 3\n" + GOOD.replace("[[hole]]", "[[holes]]"), 1, "hole: must be a section [[hole]], not 3"),
+        (PARTS[: PARTS.index("[[part]]")], 4, "[outline]: [[part]] blocks are missing"),
     ],
     ids=lambda value: value if isinstance(value, str) and "\n" not in value else "",
 )  # fmt: skip
 def test_a_fault_is_reported_on_its_line(text: str, line: int, message: str) -> None:
     assert any(found == line and sentence.startswith(message) for found, sentence in faults(text)), faults(text)
-
-
-PARTS = """\
-[plate]
-nu = 0.3
-hole_radius = 1
-[outline]
-start = [-3, -3]
-[[part]]
-name = "bottom"
-to = [3, -3]
-[[part]]
-name = "right"
-to = [3, 3]
-[[part]]
-name = "arch"
-to = [-3, 3]
-through = [0, 5]
-[[part]]
-name = "left"
-to = [-3, -3]
-[[support]]
-parts = ["left"]
-"""
 
 
 def test_parts_follow_one_another() -> None:
@@ -186,10 +187,6 @@ def test_faults_of_parts(old: str, new: str, line: int, message: str) -> None:
     assert old in PARTS
     found = faults(PARTS.replace(old, new))
     assert [(at, text[: len(message)]) for at, text in found] == [(line, message)]
-
-
-def test_an_outline_without_parts_is_refused() -> None:
-    assert (4, "[outline]: [[part]] blocks are missing") in faults(PARTS[: PARTS.index("[[part]]")])
 
 
 def test_all_faults_are_reported_at_once() -> None:

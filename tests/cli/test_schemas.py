@@ -18,7 +18,7 @@ from fastpin.verification.rows import Check
 from tests.support import seats
 from tests.support.case_texts import PRESSED
 from tests.support.commands import printed, said
-from tests.support.tiers import some_gate
+from tests.support.tiers import gate, some_gate
 
 BUSHED = PRESSED + '[plate_body]\nmaterial = "C93200"\nouter_radius = 0.012\ninterference = 1e-5\n'
 CASES = {
@@ -96,16 +96,18 @@ def test_checks(monkeypatch: pytest.MonkeyPatch) -> None:
     assert faults(written("verify"), "verify") == []
 
 
-@pytest.mark.gate
-def test_benchmarks() -> None:
-    assert faults(written("benchmarks", "nafems-loaded-pin"), "benchmarks") == []
-
-
 @pytest.mark.parametrize(
-    "words", [(), ("kt_bearing",), ("contact_angle", "--load-parameter", "1", "--friction", "0.3")]
+    "words",
+    [
+        *gate("benchmarks nafems-loaded-pin"),
+        "charts",
+        "charts kt_bearing",
+        "charts contact_angle --load-parameter 1 --friction 0.3",
+    ],
 )
-def test_charts(words: tuple[str, ...]) -> None:
-    assert faults(written("charts", *words), "charts") == []
+def test_benchmarks_and_charts(words: str) -> None:
+    command, *more = words.split()
+    assert faults(written(command, *more), command) == []
 
 
 @pytest.mark.gate

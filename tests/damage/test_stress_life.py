@@ -183,35 +183,35 @@ def test_the_curves_of_the_package() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("made", "given", "words"),
     [
         (
-            {"curve": "2024-T3 shet, Kt 1"},
+            FatigueConstants, {"curve": "2024-T3 shet, Kt 1"},
             'curve: there is no stress-life curve "2024-T3 shet, Kt 1", did you mean "2024',
         ),
-        ({"curve_c": -1.0}, "curve_c: must not be negative, not -1"),
-        ({"curve_m": 1.0}, "curve_m: must lie between 0.01 and 0.99, not 1"),
-        ({"curve_samples": 3}, "curve_samples: must be a whole number of at least 6, not 3"),
-    ],
-)
-def test_wrong_constants_are_refused(given: dict, words: str) -> None:
-    assert str(refused(FatigueConstants, **given)).startswith(words)
-
-
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"reliability": 0.99}, 'reliability: needs criterion = "stress-life", not ["smith-watson-topper"]'),
-        ({"criterion": "stress-life", "confidence": 0.9}, "confidence: belongs to a reliability, such as"),
+        (FatigueConstants, {"curve_c": -1.0}, "curve_c: must not be negative, not -1"),
+        (FatigueConstants, {"curve_m": 1.0}, "curve_m: must lie between 0.01 and 0.99, not 1"),
+        (FatigueConstants, {"curve_samples": 3}, "curve_samples: must be a whole number of at least 6, not 3"),
         (
-            {"criterion": "stress-life", "reliability": 99},
+            FatigueAssessment, {"reliability": 0.99},
+            'reliability: needs criterion = "stress-life", not ["smith-watson-topper"]',
+        ),
+        (
+            FatigueAssessment, {"criterion": "stress-life", "confidence": 0.9},
+            "confidence: belongs to a reliability, such as",
+        ),
+        (
+            FatigueAssessment, {"criterion": "stress-life", "reliability": 99},
             "reliability: must lie between 0.5 and 0.999999, not 99",
         ),
-        ({"residual_stress": [[0, 1e8]]}, "residual_stress: must be a number or 2 to 1,000 pairs, not 1"),
+        (
+            FatigueAssessment, {"residual_stress": [[0, 1e8]]},
+            "residual_stress: must be a number or 2 to 1,000 pairs, not 1",
+        ),
     ],
-)
-def test_wrong_assessments_are_refused(given: dict, words: str) -> None:
-    assert str(refused(FatigueAssessment, **given)).startswith(words)
+)  # fmt: skip
+def test_wrong_constants_and_assessments_are_refused(made: type, given: dict, words: str) -> None:
+    assert str(refused(made, **given)).startswith(words)
 
 
 CASE = """pin = {{ material = "steel" }}

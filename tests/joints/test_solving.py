@@ -358,6 +358,9 @@ def test_a_result_can_be_pickled() -> None:
     assert again[0].contacts[0].peak_hoop_stress() == result[0].contacts[0].peak_hoop_stress()
 
 
+FREE = JointPlate("free", STEEL, 1.0, rectangle((-4.0, 4.0), (-4.0, 4.0)))
+
+
 # -- refusals ----------------------------------------------------------------------------------------------------------
 
 
@@ -384,6 +387,10 @@ def test_a_result_can_be_pickled() -> None:
             "supports: has no meaning for an infinite plate",
         ),
         (lambda: Joint((SHEET,), (*in_sheet(0.0).pins, *in_sheet(0.0).pins)), 'name: two parts are called "p0"'),
+        (
+            lambda: Joint((FREE,), (JointPin("a", 0, STEEL, 1.0, ("free",)),)),
+            "plate free: support: the supports leave a rigid motion",
+        ),
         (lambda: solve_joint(in_sheet(0.0), []), "corners: must have at least one corner"),
         (lambda: solve_joint(in_sheet(0.0), [{"p0.z": 1.0}]), 'corner 1: must be "sheet.sxx"'),
         (lambda: solve_joint(in_sheet(0.0), [{"p0.x": math.inf}]), "p0.x: must be a finite number, not inf"),
@@ -393,12 +400,6 @@ def test_a_result_can_be_pickled() -> None:
 )
 def test_wrong_input_is_refused_in_one_sentence(make: Any, words: str) -> None:
     assert str(refused(make)).startswith(words)
-
-
-def test_a_plate_that_nothing_holds_is_refused_by_its_name() -> None:
-    free = JointPlate("free", STEEL, 1.0, rectangle((-4.0, 4.0), (-4.0, 4.0)))
-    words = str(refused(Joint, (free,), (JointPin("a", 0, STEEL, 1.0, ("free",)),)))
-    assert words.startswith("plate free: support: the supports leave a rigid motion")
 
 
 def test_pins_of_two_sizes_are_refused() -> None:

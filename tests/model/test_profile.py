@@ -28,25 +28,26 @@ def test_a_function_of_one_angle_is_named_with_its_failure() -> None:
     assert isinstance(raised.value.__cause__, TypeError)
 
 
-def test_the_name_of_a_file_is_no_profile_but_says_how_to_read_one() -> None:
-    words = 'gap.pin: is the name of a file: Profile.from_csv("roundness.csv") reads it'
-    assert str(refused(fastpin.model.InitialGap, pin="roundness.csv")) == words
-
-
 @pytest.mark.parametrize(
-    ("call", "field"),
+    ("call", "sentence"),
     [
-        (lambda: Profile.ellipse(1.0).values("0", 1.0), "theta"),
-        (lambda: Profile.ellipse(1.0).values([0.0], "1"), "radius"),
-        (lambda: Profile.ellipse(1.0).angles(-1, 1.0), "count"),
-        (lambda: Profile.ellipse(1.0).words(3), "text"),
-        (lambda: Profile.of(3, 0.1), "place"),
-        (lambda: Wear(1e-15).coefficients(1.0, 0.0), "theta"),
-        (lambda: Wear(1e-15).coefficients(0.0, [0.0]), "radius"),
+        (lambda: Profile.ellipse(1.0).values("0", 1.0), "theta: "),
+        (lambda: Profile.ellipse(1.0).values([0.0], "1"), "radius: "),
+        (lambda: Profile.ellipse(1.0).angles(-1, 1.0), "count: "),
+        (lambda: Profile.ellipse(1.0).words(3), "text: "),
+        (lambda: Profile.of(3, 0.1), "place: "),
+        (lambda: Wear(1e-15).coefficients(1.0, 0.0), "theta: "),
+        (lambda: Wear(1e-15).coefficients(0.0, [0.0]), "radius: "),
+        (lambda: Profile.constant(0.3).scaled("2"), "factor: must be a number"),
+        (lambda: Profile.flat(0.1, 0.0).scaled(-1.0), "depth: must be positive, not -0.1"),
+        (
+            lambda: fastpin.model.InitialGap(pin="roundness.csv"),
+            'gap.pin: is the name of a file: Profile.from_csv("roundness.csv") reads it',
+        ),
     ],
 )
-def test_arguments_of_methods_are_checked(call, field: str) -> None:
-    assert refused(call).field == field
+def test_arguments_are_checked(call, sentence: str) -> None:
+    assert str(refused(call)).startswith(sentence)
 
 
 def test_values_are_those_of_lists_and_of_whole_numbers() -> None:
@@ -68,10 +69,3 @@ def test_a_scaled_profile_has_scaled_values(profile: Profile, factor: float) -> 
 
 def test_a_scaled_flat_has_another_depth() -> None:
     assert Profile.flat(0.1, 0.0).scaled(0.5) == Profile.flat(0.05, 0.0)
-    with pytest.raises(InputError, match=r"depth: must be positive, not -0\.1"):
-        Profile.flat(0.1, 0.0).scaled(-1.0)
-
-
-def test_a_factor_is_a_number() -> None:
-    with pytest.raises(InputError, match="factor: must be a number"):
-        Profile.constant(0.3).scaled("2")  # type: ignore[arg-type]

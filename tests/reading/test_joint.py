@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from fastpin import InputError, Material, MaterialPair, Problem, State, solve
-from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin import Material, MaterialPair, Problem, State, solve
+from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.reading import BushFit
 from fastpin.states import QUANTITIES
 from tests.support.refusals import refused
@@ -146,18 +146,17 @@ def test_a_press_fit_is_lame_s():
     assert Problem(pair, 0.01, 1e-4, 0.2, plate_body=Bushing(BRONZE, 0.0125)).assembled_clearance == 1e-4
 
 
-@pytest.mark.parametrize("body", [Plate(), Ring(2.0)])
-def test_without_a_bush_there_is_no_interface(body):
+@pytest.mark.parametrize(
+    ("body", "friction", "words"),
+    [
+        (Plate(), None, "plate_body: the plate has no bush: there is no interface"),
+        (Ring(2.0), None, "plate_body: the plate has no bush: there is no interface"),
+        (Bushing(BRONZE, 1.25), -0.1, "friction: must"),
+    ],
+)
+def test_an_interface_needs_a_bush_and_a_friction(body, friction, words):
     state = solve(Problem.from_load_parameter(LIKE, 0.1, 0.0, plate_body=body), [{"P": 1.0}], nodes=41)[-1]
-    with pytest.raises(InputError, match="plate_body: the plate has no bush: there is no interface"):
-        state.bush_fit()
-
-
-def test_the_friction_of_an_interface_is_checked():
-    body = Bushing(BRONZE, 1.25)
-    state = solve(Problem.from_load_parameter(LIKE, 0.1, 0.0, pin_body=Disk(), plate_body=body), [{"P": 1.0}], nodes=41)
-    with pytest.raises(InputError, match="friction: must"):
-        state[-1].bush_fit(-0.1)
+    assert str(refused(state.bush_fit, *([] if friction is None else [friction]))).startswith(words)
 
 
 @pytest.mark.gate

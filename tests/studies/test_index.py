@@ -89,21 +89,9 @@ def execute(path: Path, statement: str, *values: object) -> None:
         database.execute(statement, values)
 
 
-def truncated(path: Path) -> None:
-    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-
-
-def text(path: Path) -> None:
-    path.write_text("run,status\n" * 1000)
-
-
 def foreign(path: Path) -> None:
     path.unlink()
     execute(path, "CREATE TABLE runs (id TEXT)")
-
-
-def later(path: Path) -> None:
-    execute(path, "PRAGMA user_version = 99")
 
 
 def garbled(path: Path) -> None:
@@ -116,12 +104,16 @@ def garbled(path: Path) -> None:
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (truncated, "is no index of a sweep, or a damaged one"),
-        (text, "is no index of a sweep, or a damaged one"),
+        (
+            lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]),
+            "is no index of a sweep, or a damaged one",
+        ),
+        (lambda path: path.write_text("run,status\n" * 1000), "is no index of a sweep, or a damaged one"),
         (garbled, "is no index of a sweep, or a damaged one"),
         (foreign, "is an SQLite file, but not the index of a sweep"),
-        (later, "is the index of another version of fastpin"),
+        (lambda path: execute(path, "PRAGMA user_version = 99"), "is the index of another version of fastpin"),
     ],
+    ids=["truncated", "text", "garbled", "foreign", "later"],
 )
 def test_what_is_no_index_is_refused(damage: Callable[[Path], None], words: str, create: bool, directory: Path) -> None:
     damage(directory / INDEX)
@@ -152,9 +144,10 @@ def test_an_index_that_can_not_be_written_is_named(plan: Plan, directory: Path) 
                 write()
 
 
-def test_an_index_that_can_not_be_made_is_named() -> None:
+@pytest.mark.parametrize("make", [lambda path: Index(path, write=True), lambda path: lock_directory(path).__enter__()])
+def test_an_index_or_a_lock_that_can_not_be_made_is_named(make: Callable[[Path], object]) -> None:
     with pytest.raises(InputError, match=r"can't be used: unable to open database file"):
-        Index(Path("/proc/1"), write=True)
+        make(Path("/proc/1"))
 
 
 def test_half_a_transaction_is_none(plan: Plan, tmp_path: Path) -> None:
@@ -171,11 +164,6 @@ def test_half_a_transaction_is_none(plan: Plan, tmp_path: Path) -> None:
         assert index.rows() == []
         index.expect(plan, plan.points)
         assert len(index.rows()) == 4
-
-
-def test_a_lock_that_can_not_be_made_is_named() -> None:
-    with pytest.raises(InputError, match="can't be used: unable to open"), lock_directory(Path("/proc/1")):
-        pass
 
 
 def test_an_index_that_is_about_to_be_made_is_written(tmp_path: Path) -> None:

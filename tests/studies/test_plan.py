@@ -427,6 +427,9 @@ def test_sections_that_a_plan_makes_are_checked(tmp_path: Path) -> None:
     assert [line[:40] for line in found] == ["plan, line 3: dundurs.alpha: [dundurs]: "] * 2
 
 
+LABELLED = "[grid]\ncontact.friction = [0.2, 0.4]\n[labels]\n"
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -442,6 +445,16 @@ def test_sections_that_a_plan_makes_are_checked(tmp_path: Path) -> None:
         ("[grid]\ncontact.friction = [nan]", "line 2: contact.friction: must be a finite number, not nan"),
         ("[grid]\ncontact.friction = [0.2, .3]", "line 2: contact.friction: must be"),
         ("[grid]\ncontact.friction = [1979-05-27]", "line 2: contact.friction: must be a number, not 1979-05-27"),
+        (
+            f'{LABELLED}contact.frictoin = "mu"',
+            'line 4: labels: the plan has no "contact.frictoin", did you mean "contact.friction"?',
+        ),
+        (
+            f'{LABELLED}wear = "W"',
+            'line 4: labels: the plan has no "wear"; a label is for a varied field, an outcome or a key figure',
+        ),
+        (f"{LABELLED}contact.friction = 3", "line 4: labels: contact.friction: must be text in quotes, not 3"),
+        (f'{LABELLED}contact.friction = ""', "line 4: labels: contact.friction: must be text of 1 to 80 letters"),
     ],
 )
 def test_single_faults(text: str, words: str, tmp_path: Path) -> None:
@@ -487,18 +500,3 @@ def test_labels_change_no_run() -> None:
     assert plan.labels == {"contact.friction": "mu", "peak_pressure": "N"}
     assert plan.digest == parse_plan(plain).digest
     assert parse_plan(plain).labels == {}
-
-
-@pytest.mark.parametrize(
-    ("line", "message"),
-    [
-        ('contact.frictoin = "mu"', 'labels: the plan has no "contact.frictoin", did you mean "contact.friction"?'),
-        ('wear = "W"', 'labels: the plan has no "wear"; a label is for a varied field, an outcome or a key figure'),
-        ("contact.friction = 3", "labels: contact.friction: must be text in quotes, not 3"),
-        ('contact.friction = ""', "labels: contact.friction: must be text of 1 to 80 letters"),
-    ],
-)
-def test_faults_of_labels(line: str, message: str) -> None:
-    (found,) = faults(f"[grid]\ncontact.friction = [0.2, 0.4]\n[labels]\n{line}\n")
-    assert found.startswith("plan, line 4: ")
-    assert message in found
