@@ -109,7 +109,8 @@ def test_a_fault_has_its_line(old: str, new: str, line: int, words: str) -> None
 
 def test_a_cycle_of_fatigue_needs_repeated_corners() -> None:
     asked = SHEETS.replace('"aluminium"', '"2024-T3"') + '[fatigue]\nover = "cycle"\n'
-    assert faults_of(parse_joint, asked) == [(28, "over: the history has no cycles: repeat = 2 in [joint] repeats its corners")]
+    sentence = "over: the history has no cycles: repeat = 2 in [joint] repeats its corners"
+    assert faults_of(parse_joint, asked) == [(28, sentence)]
     assert parse_joint(asked.replace("[joint]", "[joint]\nrepeat = 2")).fatigue == FatigueAssessment(over="cycle")
 
 
