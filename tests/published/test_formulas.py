@@ -23,20 +23,16 @@ def pushed(load_parameter: float, friction: float, material: Material, plane: Pl
     return solve(problem, [{"P": 1.0}], nodes=151)[-1]
 
 
-def test_without_friction_both_formulas_agree_with_the_closed_form() -> None:
-    places = np.r_[0.0, np.logspace(-4.0, 6.0, 400)]
+@pytest.mark.parametrize(
+    ("places", "of_peak", "of_angle"),
+    [(np.r_[0.0, np.logspace(-4.0, 6.0, 400)], 1.5e-4, 1.5e-4), (np.linspace(-0.06, 0.0, 25), 0.008, 0.012)],
+    ids=["clearance", "an interference fit that opens"],
+)
+def test_without_friction_both_formulas_agree_with_the_closed_form(places, of_peak, of_angle) -> None:
     exact = closed_forms.persson_half_angle(places)
     peaks = 2.0 * np.array([closed_forms.persson_pressure(0.0, angle) for angle in np.asarray(exact)])
-    assert np.abs(peak_pressure(places) / peaks - 1.0).max() < 1.5e-4
-    assert np.abs(half_angle(places) / exact - 1.0).max() < 1.5e-4
-
-
-def test_an_interference_fit_that_opens_is_in_reach() -> None:
-    places = np.linspace(-0.06, 0.0, 25)
-    exact = closed_forms.persson_half_angle(places)
-    peaks = 2.0 * np.array([closed_forms.persson_pressure(0.0, angle) for angle in np.asarray(exact)])
-    assert np.abs(peak_pressure(places) / peaks - 1.0).max() < 0.008
-    assert np.abs(half_angle(places) / exact - 1.0).max() < 0.012
+    assert np.abs(peak_pressure(places) / peaks - 1.0).max() < of_peak
+    assert np.abs(half_angle(places) / exact - 1.0).max() < of_angle
 
 
 @pytest.mark.parametrize("pin_load", ["body", "centre"])

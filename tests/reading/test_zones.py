@@ -32,21 +32,18 @@ def half_circle(theta, start, stop):
     return np.sqrt(np.clip((theta - start) * (stop - theta), 0.0, None))
 
 
-@pytest.mark.parametrize("nodes", [60, 200, 1000])
-def test_square_root_edges(nodes):
-    grid = Grid.arc(-2.0, 0.5, nodes)
-    start, stop = -1.7123, 0.2345
-    values = half_circle(grid.theta, start, stop)
-    found = contact(grid, values)[0]
-    assert found == pytest.approx((start, stop), abs=SAMPLED * grid.weights[1])
+T = np.linspace(-1.0, 1.0, 300)
+GRADED = Grid(1.5 * (T + 0.1 * np.sin(np.pi * T)))
 
 
-def test_edges_of_graded_nodes():
-    t = np.linspace(-1.0, 1.0, 300)
-    grid = Grid(1.5 * (t + 0.1 * np.sin(np.pi * t)))
-    values = half_circle(grid.theta, -1.1, 0.9)
-    found = contact(grid, values)[0]
-    assert found == pytest.approx((-1.1, 0.9), abs=SAMPLED * grid.weights.max())
+@pytest.mark.parametrize(
+    ("grid", "ends"),
+    [*((Grid.arc(-2.0, 0.5, nodes), (-1.7123, 0.2345)) for nodes in (60, 200, 1000)), (GRADED, (-1.1, 0.9))],
+    ids=["60", "200", "1000", "graded"],
+)
+def test_square_root_edges(grid, ends):
+    found = contact(grid, half_circle(grid.theta, *ends))[0]
+    assert found == pytest.approx(ends, abs=SAMPLED * grid.weights.max())
 
 
 def test_zones_across_the_seam_of_the_circle():

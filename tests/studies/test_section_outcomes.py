@@ -1,4 +1,4 @@
-"""Outcomes of the strength of a laminate in sweeps, their faults, and envelopes of bearing and bypass."""
+"""Outcomes of cracks and of the strength of a laminate in sweeps, their faults, and envelopes of bearing and bypass."""
 
 import math
 from pathlib import Path
@@ -7,14 +7,35 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import assess, damage
+from fastpin import CaseFileError, assess, cracks, damage
+from fastpin.cli.main import main
+from fastpin.cracks import CrackFate
 from fastpin.report.sweep import envelopes
 from fastpin.studies import read_plan, sweep
-from tests.support.case_texts import LAMINATED
+from tests.support.case_texts import IN_CYCLES, LAMINATED
 from tests.support.commands import printed, refused, said
 from tests.support.faults import fault_of
 
-CASE = f"""{LAMINATED}[solve]
+CRACKED = f"""{IN_CYCLES}[crack]
+first = 1e-4
+last = 3e-3
+theta = 66
+law = {{ law = "walker", C = 1e-10, m = 3, exponent = 0.5, threshold_range = 2e6, toughness = 11e6 }}
+"""
+
+CRACK_PLAN = """case = "case.toml"
+[grid]
+load.1.P = [[1e5, 5e4], [2e6, 3e5], [6e6, 3e5]]
+[outcomes]
+fate = { crack = "fate" }
+life = { crack = "life" }
+short = { crack = "arrest", law = { law = "paris", C = 1e-10, m = 3, threshold_range = 2e6 }, theta = -66 }
+K = { crack = "largest_K" }
+theta = { crack = "theta" }
+"""
+
+
+STRONG = f"""{LAMINATED}[solve]
 nodes = 61
 [strength]
 criterion = "yamada-sun"
@@ -22,7 +43,7 @@ distance = 0.5e-3
 failure = true
 """
 
-PLAN = """case = "case.toml"
+STRENGTH_PLAN = """case = "case.toml"
 [grid]
 load.1.P = [0, 1e6]
 load.1.syy = [-100e6, 100e6]
@@ -34,17 +55,46 @@ angle = { strength = "angle" }
 ply = { margin = "ply" }
 """
 
+CRACK, STRENGTH = (CRACKED, CRACK_PLAN), (STRONG, STRENGTH_PLAN)
 
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+
+@pytest.fixture(autouse=True)
+def _inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("case.toml").write_text(CASE)
-    Path("plan.toml").write_text(PLAN)
-    return tmp_path
+
+
+def write(case: str, plan: str) -> None:
+    Path("case.toml").write_text(case)
+    Path("plan.toml").write_text(plan)
 
 
 @pytest.mark.gate
-def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path) -> None:
+def test_a_sweep_tells_the_fate_of_cracks() -> None:
+    write(CRACKED, CRACK_PLAN)
+    assert main(["sweep", "plan.toml", "--workers", "1"]) == 0
+    rows = sweep.rows(read_plan("plan.toml"), "plan")
+    assert [row["fate"] for row in rows] == [CrackFate.NONE, CrackFate.GROWS, CrackFate.BREAKS]
+    case = fastpin.read_case("case.toml")
+    for row, loads in zip(rows, ([1e5, 5e4], [2e6, 3e5], [6e6, 3e5]), strict=True):
+        history = fastpin.LoadHistory([{"P": each} for each in loads]).repeated(2)
+        result = fastpin.solve(case.problem, history, nodes=61)
+        found = cracks.planned_growth(damage.cycle_states(result, result.cycles[-1]), case.crack)
+        assert row["life"] == (pytest.approx(found.life) if math.isfinite(found.life) else None)
+        assert row["K"] == pytest.approx(found.K_max.max())
+        assert row["theta"] == pytest.approx(66.0)
+    assert rows[0]["short"] == pytest.approx(1e-4)
+    assert rows[1]["short"] is None
+
+
+def test_a_case_without_a_crack_leaves_the_lengths_to_the_outcome() -> None:
+    write(CRACKED[: CRACKED.index("[crack]")], CRACK_PLAN)
+    with pytest.raises(CaseFileError, match="fate: first is missing: give the first length of the crack, m"):
+        read_plan("plan.toml")
+
+
+@pytest.mark.gate
+def test_a_sweep_tells_the_strength_and_draws_the_envelope() -> None:
+    write(STRONG, STRENGTH_PLAN)
     words = said("sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope", code=1).out
     assert "outcome curve can't be read in 2 runs" in words
     plan = read_plan("plan.toml")
@@ -77,11 +127,12 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path) -> None
 
 
 @pytest.mark.gate
-def test_an_envelope_follows_the_force_and_the_other_fields(folder: Path) -> None:
-    Path("plan.toml").write_text(
+def test_an_envelope_follows_the_force_and_the_other_fields() -> None:
+    write(
+        STRONG,
         'case = "case.toml"\n[grid]\nload.1.Q = [-1e6]\nload.1.P = [0]\nload.1.sxx = [50e6]\nload.1.syy = [-9e6]\n'
         '"plate.layup" = ["[0/90]4s", "[0/45/-45/90]2s"]\n[outcomes]\nf = { strength = "factor" }\n'
-        '[labels]\n"plate.layup" = "layup"\n'
+        '[labels]\n"plate.layup" = "layup"\n',
     )
     said("sweep", "plan.toml", "--workers", "1")
     plan = read_plan("plan.toml")
@@ -101,15 +152,16 @@ def test_an_envelope_follows_the_force_and_the_other_fields(folder: Path) -> Non
         (["--envelope"], "--envelope: says what a figure shows; --plot FILE is missing"),
     ],
 )
-def test_what_an_envelope_can_not_show(folder, words, sentence):
+def test_what_an_envelope_can_not_show(words, sentence):
+    write(STRONG, STRENGTH_PLAN)
     assert sentence in refused("sweep", "plan.toml", *words)
     assert not Path("plan").exists()
 
 
 @pytest.mark.gate
-def test_points_without_a_factor_are_noted(folder: Path) -> None:
-    plan = PLAN.replace("[-100e6, 100e6]", "[0]")
-    Path("plan.toml").write_text(plan)
+def test_points_without_a_factor_are_noted() -> None:
+    plan = STRENGTH_PLAN.replace("[-100e6, 100e6]", "[0]")
+    write(STRONG, plan)
     words = said("sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope", code=1).err
     assert "note: 1 of 2 points have no value in the figure" in words
     Path("plan.toml").write_text(plan.replace("[0, 1e6]", "[0]"))
@@ -118,23 +170,42 @@ def test_points_without_a_factor_are_noted(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line", "sentence"),
+    ("texts", "old", "new", "line", "sentence"),
     [
-        ('"ratio" }', '"ratios" }', 7, 'ratio: strength: must be "ratio", "angle" or "factor"'),
-        ('"factor" }', '"factor", failure = true }', 6, 'factor: unknown key "failure"'),
-        ('"factor" }', '"factor", distance = -1 }', 6, "factor: distance: must not be negative"),
-        ("load.1.P", "strength.distance = [1e-4]\nload.1.P", 3, '"strength.distance": changes no run of a sweep; an'),
+        (CRACK, '"life"', '"lief"', 6, 'life: crack: must be "fate", "life"'),
+        (CRACK, '{ crack = "life" }', '{ crack = "life", fist = 3 }', 6, 'life: unknown key "fist"'),
+        (
+            CRACK,
+            '{ crack = "life" }',
+            '{ crack = "life", last = 1e-5 }',
+            6,
+            "life: last: must be longer than the first",
+        ),
+        (CRACK, "m = 3, thres", "m = 0, thres", 7, "short: m: must be positive, not 0"),
+        (CRACK, "load.1.P", "crack.first = [1e-4]\nload.1.P", 3, '"crack.first": no run of a sweep grows a crack'),
+        (STRENGTH, '"ratio" }', '"ratios" }', 7, 'ratio: strength: must be "ratio", "angle" or "factor"'),
+        (STRENGTH, '"factor" }', '"factor", failure = true }', 6, 'factor: unknown key "failure"'),
+        (STRENGTH, '"factor" }', '"factor", distance = -1 }', 6, "factor: distance: must not be negative"),
+        (
+            STRENGTH,
+            "load.1.P",
+            "strength.distance = [1e-4]\nload.1.P",
+            3,
+            '"strength.distance": changes no run of a sweep; an',
+        ),
     ],
 )
-def test_a_fault_is_one_sentence_with_its_line(folder: Path, old: str, new: str, line: int, sentence: str) -> None:
-    Path("plan.toml").write_text(PLAN.replace(old, new, 1))
+def test_a_fault_is_one_sentence_with_its_line(texts, old: str, new: str, line: int, sentence: str) -> None:
+    case, plan = texts
+    write(case, plan.replace(old, new, 1))
     found_line, found = fault_of(read_plan, "plan.toml")
     assert found_line == line
     assert found.startswith(sentence)
 
 
 @pytest.mark.survey
-def test_a_tolerance_study_has_the_strength_too(folder: Path) -> None:
+def test_a_tolerance_study_has_the_strength_too() -> None:
+    write(STRONG, STRENGTH_PLAN)
     Path("tolerances.toml").write_text(
         'case = "case.toml"\n[tolerances]\n"contact.clearance" = { from = 10e-6, to = 30e-6 }\n'
         '[outcomes]\nratio = { strength = "ratio" }\n'
