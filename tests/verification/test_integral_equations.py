@@ -68,22 +68,28 @@ def persson_errors(grid, load_parameter, of_pressure=None):
     return [np.abs(r[inside]).max() for r in residuals(problem, 1.0, grid, N, none, slip, 0.0)]
 
 
-@pytest.mark.parametrize("load_parameter", [0.05, 0.5])
-@pytest.mark.parametrize("make", [Grid.arc, graded], ids=["uniform", "graded"])
-def test_persson_satisfies_both_equations(make, load_parameter):
+def arcs(make, load_parameter):
+    """Meshes of the contact by Persson."""
     half_angle = closed_forms.persson_half_angle(load_parameter)
-    meshes = [make(-math.pi / 2.0 - half_angle, -math.pi / 2.0 + half_angle, n) for n in (41, 81, 161, 321)]
+    return [make(-math.pi / 2.0 - half_angle, -math.pi / 2.0 + half_angle, n) for n in (41, 81, 161, 321)]
+
+
+ROUND = closed_forms.persson_load_parameter(0.4 * math.pi)
+"""The edges of this contact are nodes of every mesh of the circle."""
+
+
+@pytest.mark.parametrize(
+    ("meshes", "load_parameter"),
+    [
+        *((arcs(make, load), load) for load in (0.05, 0.5) for make in (Grid.arc, graded)),
+        ([Grid.circle(n) for n in (150, 300, 600)], ROUND),
+    ],
+    ids=["uniform, 0.05", "graded, 0.05", "uniform, 0.5", "graded, 0.5", "circle"],
+)
+def test_persson_satisfies_both_equations(meshes, load_parameter):
     errors = np.array([persson_errors(grid, load_parameter) for grid in meshes])
     assert np.all(errors[-1] < 1e-4)
     # the root singularity of the pressure at the edges holds the order at 3/2
-    assert rate(errors[:, 0]) > 1.35
-    assert rate(errors[:, 1]) > 1.35
-
-
-def test_persson_round_the_circle():
-    load_parameter = closed_forms.persson_load_parameter(0.4 * math.pi)  # the edges are nodes of every mesh
-    errors = np.array([persson_errors(Grid.circle(n), load_parameter) for n in (150, 300, 600)])
-    assert np.all(errors[-1] < 1e-4)
     assert rate(errors[:, 0]) > 1.35
     assert rate(errors[:, 1]) > 1.35
 
