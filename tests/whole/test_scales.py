@@ -39,11 +39,6 @@ def test_a_history_of_tiny_loads_is_refused(similar, force):
         fastpin.solve(problem, [{"P": force}], nodes=41)
 
 
-def test_a_number_without_a_float_is_refused():
-    with pytest.raises(InputError, match="P of corner 1: must be a finite number, not inf"):
-        fastpin.LoadHistory([{"P": 10**400}])
-
-
 @pytest.mark.gate
 @pytest.mark.parametrize("load_parameter", [1e12, 1e50, 1e20, 1e30])
 def test_a_contact_narrower_than_the_digits_of_an_angle_is_lost(similar, load_parameter):
@@ -84,11 +79,11 @@ def test_every_result_within_the_limits_is_finite(modulus, radius):
         (lambda: solve_scaled(ratio=1e31), "plate: the moduli of pin and plate must not differ by more than a factor"),
         (lambda: solve_scaled(radius=1e-300), "hole_radius: must lie between 1e-30 and 1e+30, not 1e-300"),
         (lambda: solve_scaled(radius=1e300), "hole_radius: must lie between 1e-30 and 1e+30, not 1e+300"),
+        (lambda: fastpin.LoadHistory([{"P": 10**400}]), "P of corner 1: must be a finite number, not inf"),
     ],
 )
-def test_units_beyond_all_scales_are_refused(call, message):
-    with pytest.raises(InputError, match=f"^{re.escape(message)}"):
-        call()
+def test_numbers_beyond_all_scales_are_refused(call, message):
+    assert str(refused(call)).startswith(message)
 
 
 def test_a_stiff_body_is_rigid_long_before_the_limit(similar):
