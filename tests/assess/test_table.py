@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin import Result, solve
 from fastpin.assess.outputs import (
     MAX_ROWS,
     LeftOut,
@@ -17,10 +18,8 @@ from fastpin.assess.outputs import (
     table_of_lines,
     with_rows,
 )
-from fastpin.casefile.reader import EXAMPLE, parse_case
+from fastpin.casefile import EXAMPLE, parse_case
 from fastpin.report.states import state_table, stored_rows
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
 from fastpin.states.quantities import load_point
 from tests.support.samples import sample_result
 from tests.support.tiers import gate

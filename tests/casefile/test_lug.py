@@ -4,10 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from fastpin import MATERIALS, CaseFileError, InputError
 from fastpin.casefile.lug import LUG_EXAMPLE, LUG_KEYS, parse_lug, read_lug
-from fastpin.errors import CaseFileError, InputError
 from fastpin.lugs.outline import Hole, Lug, PartLoad, rectangle
-from fastpin.model.materials import MATERIALS
 from tests.support.faults import faults_of
 
 GOOD = """\

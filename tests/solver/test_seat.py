@@ -7,13 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin import Grid, LoadHistory, MaterialPair, Points, Problem, Session, load, record, resume, solve
+from fastpin import Grid, InputError, LoadHistory, MaterialPair, Points, Problem, Session, load, record, resume, solve
 from fastpin.bodies import Bushing, Disk, Ring, Tube
 from fastpin.elasticity.interfaces import JointSystem
-from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
+from fastpin.model import InitialGap, Profile
 from fastpin.model.options import ALL_ROUND, SolveOptions
-from fastpin.model.profile import InitialGap, Profile
 from fastpin.solver.errors import ArcError, ConvergenceError, NoEquilibriumError, ResolutionError
 from fastpin.solver.run import Run
 from fastpin.solver.solving import MemoryRecorder

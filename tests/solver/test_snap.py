@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 
 import fastpin.solver.path_stepper as path_stepper
-from fastpin import Problem, solve
+from fastpin import Grid, NoEquilibriumError, Problem, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, M, P
+from fastpin.solver import ArcError
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import elastic_energy, worst_residual
-from fastpin.solver.errors import ArcError, NoEquilibriumError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
 from fastpin.solver.snap import _step_on_springs, find_state_beyond

@@ -6,28 +6,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fastpin import InputError, LoadHistory, Material, MaterialPair, Problem, SolveOptions, load, record, resume, solve
 from fastpin.elasticity import large
 from fastpin.elasticity.large import LargeSystem, build_system
 from fastpin.elasticity.system import System
-from fastpin.errors import InputError
+from fastpin.model import LOADS
 from fastpin.model.grid import Grid, graded_size
-from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.solver import arc, window
 from fastpin.solver import survey as surveys
 from fastpin.solver.arc import narrow_grids
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.errors import NoEquilibriumError, ResolutionError
 from fastpin.solver.first_contact import first_contact
-from fastpin.solver.solving import solve
 from fastpin.solver.survey import survey
 from fastpin.solver.task import Task
 from fastpin.solver.window import Window
-from fastpin.storage.recording import record, resume
-from fastpin.storage.store import load
 from tests.support.tiers import gate
 from tests.survey.histories import generate
 

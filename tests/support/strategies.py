@@ -12,13 +12,12 @@ from hypothesis import strategies as st
 
 import fastpin
 from fastpin.cracks import Nasgro, Walker
+from fastpin.model import LOADS, InitialGap, Profile
 from fastpin.model.angles import DEGREE, angle_at
 from fastpin.model.assessment import DISTANCES, MINER_RULES
 from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.history import Block
-from fastpin.model.loads import LOADS
 from fastpin.model.options import MOST_BETWEEN, SolveOptions
-from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples, Term, Zone
 
 Tables = dict[str, dict[str, Any]]

@@ -10,11 +10,10 @@ from functools import partial
 
 import numpy as np
 
+from fastpin import Material, MaterialPair, Problem
 from fastpin.bodies import Bushing, Compliance, Ring, Tube, harmonics
 from fastpin.elasticity.terms import body_terms
 from fastpin.model.loads import LOADS, REMOTE
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.joint_rows import BRONZE
 
