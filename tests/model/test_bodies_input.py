@@ -70,7 +70,7 @@ def test_a_hollow_pin_carries_a_moment_and_may_be_held(load, rotation):
     ],
 )
 def test_bodies_that_only_python_can_have_are_refused_in_one_sentence(make, field, words):
-    """tests/whole/test_bad_bodies.py has the others."""
+    """tests/whole/test_bad_parts.py has the others."""
     error = refused(make)
     assert error.field == field
     assert words in error.reason
