@@ -16,7 +16,7 @@ from fastpin.cracks.fates import CRACK_FATES, CrackFate
 from fastpin.errors import InputError
 from fastpin.model import Case, LoadHistory, Problem, angles, points
 from fastpin.model.case import questions_of
-from fastpin.model.crack import CRACK_KEYS, CrackGrowth, law_of
+from fastpin.model.crack import CRACK_KEYS, CrackGrowth, edge_name, law_of, mouth_words
 from fastpin.model.doubts import doubts_given
 from fastpin.model.growth import KnownLaw, Nasgro, Walker, law_entries
 from fastpin.model.keys import LAW
@@ -30,10 +30,15 @@ from fastpin.states.state import State
 if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
     from fastpin.storage.held import Held
 
+OF_MOUTH = "of a mouth beyond the hole"
+
 GROWTH = (
     Output("angle_of_mouth", "angle", lambda found: found.crack.theta),
     Output("direction", "width", lambda found: found.crack.angle),
     Output("body", "text", lambda found: found.crack.body, allowed=points.EDGES),
+    Output("edge", "text", lambda found: edge_name(found.problem, found.crack), OF_MOUTH, may_lack=True),
+    Output("x", "length", lambda found: found.crack.place and found.crack.place[0], OF_MOUTH, may_lack=True),
+    Output("y", "length", lambda found: found.crack.place and found.crack.place[1], OF_MOUTH, may_lack=True),
     Output(
         "law", of=lambda found: law_entries(found.law) if isinstance(found.law, Walker | Nasgro) else None,
         form=or_null({"type": "object"}),
@@ -166,9 +171,14 @@ def law_words(problem: Problem, law: KnownLaw) -> str:
 def crack_words(problem: Problem, crack: CrackGrowth) -> str:
     """Lengths, place, direction, law and residual stress of a crack that is to grow."""
     length = units(problem)["length"]
-    place = "where it grows fastest" if crack.theta is None else f"at {angles.from_bottom(crack.theta):.4g} deg"
+    is_anywhere = crack.theta is None and crack.place is None
+    place = "where it grows fastest" if is_anywhere else f"at {mouth_words(problem, crack, '.4g')}"
     parts = [f"{length.text(crack.first)} to {length.text(crack.last)}", place]
-    parts += [f"{math.degrees(crack.angle):.4g} deg from the radius"] if crack.angle else []
+    parts += (
+        [f"{math.degrees(crack.angle):.4g} deg from the {'radius' if crack.place is None else 'normal'}"]
+        if crack.angle
+        else []
+    )
     parts += ["in the plate round the bush"] if crack.body == "seat" else []
     parts += [law_words(problem, law_of(problem, crack))]
     return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
@@ -181,7 +191,7 @@ def crack_margins(growth: cracks.Growth) -> list[Margin]:
     length or to its arrest. Growth: threshold over the range of K_I at the first length.
     """
     length, body = units(growth.problem)["length"], growth.crack.body
-    where = f"mouth at {angles.from_bottom(growth.crack.theta):z.2f} deg"
+    where = f"mouth at {mouth_words(growth.problem, growth.crack)}"
     subject = f"{points.edge_body(growth.problem, body)}: crack"
 
     def row(name: str, words: str, value: np.ndarray, allowable: float, at: int, remark: str) -> Margin:
@@ -266,7 +276,8 @@ def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) 
     """
     mark = over_yield_words(over or {}, points.owner_of(growth.problem, growth.crack.body))
     where = " in the plate round the bush" if growth.crack.body == "seat" else ""
-    line = f"crack{where} at {angles.from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}"
+    mouth = mouth_words(growth.problem, growth.crack) + (" from the bottom" if growth.crack.place is None else "")
+    line = f"crack{where} at {mouth}: {growth.words}"
     if growth.fate == CrackFate.NONE or math.isnan(growth.error):
         return line + mark
     of = "length" if growth.fate == CrackFate.STOPS else "life"

@@ -51,7 +51,15 @@ def read_crack(source: CaseText, section: Section, default: Mapping[str, Any] | 
         if key not in values:
             section.report(f"{key} is missing: give the {key} length of the crack, {length}")
     values = {"first": 1e-300, "last": 1e300, **values}
-    harmless = {"first": 1e-300, "last": 1e300, "theta": None, "angle": 0.0, "body": "plate", "residual_stress": None}
+    harmless = {
+        "first": 1e-300,
+        "last": 1e300,
+        "theta": None,
+        "angle": 0.0,
+        "body": "plate",
+        "residual_stress": None,
+        "place": None,
+    }
     crack = section.build(crack_from, values, harmless)
     return crack if len(source.placed) == faults else None
 

@@ -53,7 +53,10 @@ def _how(options: argparse.Namespace, case: Case) -> CrackGrowth:
     crack = questions_of(known).get("crack")
     entries = {} if crack is None else crack.entries()
     given = {"first": options.first, "last": options.last, "theta": options.at, "body": options.body}
-    given |= {"angle": options.angle}
+    given |= {"angle": options.angle, "place": options.place}
+    for one, other in (("theta", "place"), ("place", "theta")):
+        if given[one] is not None:
+            entries.pop(other, None)
     keys = dict.fromkeys(["law", *(name for _, names, _ in LAWS.values() for name in names)])
     law = {name: value for name in keys if (value := getattr(options, name, None)) is not None}
     if law:

@@ -130,7 +130,12 @@ def _command(commands: Any, name: str, file: str, function: str, text: str) -> a
 
 
 def _option(
-    command: argparse.ArgumentParser, flags: str, metavar: str | None, words: str, kind: Any = None, **more: Any
+    command: argparse.ArgumentParser,
+    flags: str,
+    metavar: str | tuple[str, ...] | None,
+    words: str,
+    kind: Any = None,
+    **more: Any,
 ) -> None:
     """Add an option with a value, or an argument: flags with spaces between, the value's name, help and kind."""
     command.add_argument(*flags.split(), metavar=metavar, help=words, type=kind, **more)
@@ -248,6 +253,7 @@ def add_crack(commands: Any) -> None:
         ("angle", "its direction from the radius, counter-clockwise, deg (default: [crack], else 0)"),
     ):
         _option(crack, f"--{name}", "X", words, literal)
+    _option(crack, "--place", ("X", "Y"), "in place of --at: its mouth on an edge of an outline, m", literal, nargs=2)
     crack.add_argument("--body", choices=("plate", "seat"), help="seat: the plate round a bush (default: plate)")
     _option(crack, "--case", "CASE", "case file whose [crack] replaces that of the result", Path)
     _switch(crack, "--spectrum", "count the cycles of the whole history")

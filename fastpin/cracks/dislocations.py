@@ -238,7 +238,8 @@ def _influence(
     away = np.where(own, 1.0, z - z0)
     A += np.where(own, 0.0, 1.0 / away - e2 * away.conj() / away**2)
     B += np.where(own, 0.0, 1.0 / away.conj() + e2 / away)
-    return A, B
+    even = np.where(source_turn.real < 0.0, -q * (1.0 + e2 / z**2), 0.0)  # inside a circle: its centre is regular
+    return A + even / z0, B + even / back
 
 
 def _rim_influence(

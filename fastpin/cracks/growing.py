@@ -17,7 +17,7 @@ from fastpin.cracks.reversals import closed_cycles
 from fastpin.errors import InputError, InputWarning
 from fastpin.model import angles, ties
 from fastpin.model.checks import check_callable, instance, numbers, positive, true_or_false
-from fastpin.model.crack import MOST_OF_LIGAMENT, CrackGrowth, check_length, edge_of, law_of
+from fastpin.model.crack import MOST_OF_LIGAMENT, CrackGrowth, check_length, edge_of, law_of, mouth_words
 from fastpin.model.doubts import warn_of
 from fastpin.model.growth import GrowthLaw, checked_law
 from fastpin.model.problem import Problem
@@ -92,8 +92,8 @@ class Growth(ReadOnly):
     """What a life counts: cycles, or spectra."""
 
     def __repr__(self) -> str:
-        place = angles.from_bottom(self.crack.theta)
-        return f"<Growth of a crack at {place:.2f} deg from the bottom: {self.words}>"
+        bottom = " from the bottom" if self.crack.place is None else ""
+        return f"<Growth of a crack at {mouth_words(self.problem, self.crack, '.2f')}{bottom}: {self.words}>"
 
     @property
     def delta_K(self) -> np.ndarray:
@@ -256,7 +256,7 @@ def growth(
         body is rigid, or a compliance without its outline describes the plate.
     """
     instance("crack", crack, Crack, "a Crack")
-    return _Following.of(states, law, crack.body, (first, last), residual_stress).checked(crack).grown(crack)
+    return _Following.of(states, law, crack, (first, last), residual_stress).checked(crack).grown(crack)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -319,7 +319,7 @@ def growth_along_edge(
     """
     crack = Crack(0.0, angle, body)
     check_callable("progress", progress, 2)
-    return _Following.of(states, law, crack.body, (first, last), None).along(crack, theta, progress)
+    return _Following.of(states, law, crack, (first, last), None).along(crack, theta, progress)
 
 
 def spectrum_growth(
@@ -353,7 +353,7 @@ def spectrum_growth(
     """
     instance("crack", crack, Crack, "a Crack")
     follow = _Following.of(
-        states, law, crack.body, (first, last), residual_stress, True, true_or_false("straight", straight)
+        states, law, crack, (first, last), residual_stress, True, true_or_false("straight", straight)
     )
     found = follow.checked(crack).grown(crack)
     assert isinstance(found, SpectrumGrowth)
@@ -386,10 +386,14 @@ def planned_growth(
     check_callable("progress", progress, 2)
     law, counted = law_of(stops[0].problem, how), true_or_false("spectrum", spectrum)
     residual = None if how.residual_stress is None else how.residual
-    crack = Crack(0.0 if how.theta is None else how.theta, how.angle, edge_of(how.body))
+    is_anywhere = how.theta is None and how.place is None
+    if how.place is None:
+        crack = Crack(how.theta or 0.0, how.angle, edge_of(how.body))
+    else:
+        crack = Crack(angle=how.angle, body=edge_of(how.body), place=how.place)
     straight = counted and len(stops) > MOST_REFINED
-    follow = _Following.of(stops, law, crack.body, (how.first, how.last), residual, counted, straight)
-    return follow.checked(crack).grown(crack) if how.theta is not None else follow.along(crack, None, progress).fastest
+    follow = _Following.of(stops, law, crack, (how.first, how.last), residual, counted, straight)
+    return follow.along(crack, None, progress).fastest if is_anywhere else follow.checked(crack).grown(crack)
 
 
 class _Following(NamedTuple):
@@ -408,7 +412,7 @@ class _Following(NamedTuple):
         cls,
         states: Sequence[State],
         law: GrowthLaw,
-        body: CrackedBody,
+        crack: Crack,
         ends: tuple[float, float],
         residual: Residual | None,
         counted: bool = False,
@@ -416,7 +420,7 @@ class _Following(NamedTuple):
     ) -> _Following:
         """Check the arguments of :func:`growth`."""
         stops = stops_of_one_problem(states)
-        edge = CrackedEdge.of(stops[0].problem, body)
+        edge = CrackedEdge.of(stops[0].problem, crack)
         start, end = positive("first", ends[0]), positive("last", ends[1])
         decades = math.log10(end) - math.log10(start)
         if not LEAST_DECADES < decades <= MOST_DECADES:
@@ -427,11 +431,11 @@ class _Following(NamedTuple):
     def lengths(self, crack: Crack) -> np.ndarray:
         """The lengths at which K is computed, m. They end where the ligament does."""
         problem, (start, end) = self.edge.problem, self.ends
-        check_length("last", problem, crack.body, crack.angle, end)
+        check_length("last", problem, crack, end, math.inf)
         longest = MOST_OF_LIGAMENT * self.edge.ligament(crack)
         decades = math.log10(min(end, longest)) - math.log10(start)
         if decades <= LEAST_DECADES:
-            where = f"within {MOST_OF_LIGAMENT:g} of the ligament at {angles.from_bottom(crack.theta):.2f} deg"
+            where = f"within {MOST_OF_LIGAMENT:g} of the ligament at {mouth_words(problem, crack, '.2f')}"
             length = units(problem)["length"]
             raise InputError("first", f"must lie {where}, {length.text(longest)}, not be {length.text(start)}")
         return np.geomspace(start, min(end, longest), max(math.ceil(COMPUTED * decades) + 1, 4))
@@ -443,7 +447,7 @@ class _Following(NamedTuple):
 
     def checked(self, crack: Crack) -> _Following:
         """Raise :class:`InputError` if a crack whose place is given leaves the body."""
-        check_length("last", self.edge.problem, crack.body, crack.angle, self.ends[1], crack.theta, 1.0)
+        check_length("last", self.edge.problem, crack, self.ends[1], 1.0)
         return self
 
     def grown(self, crack: Crack) -> Growth:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,15 @@ from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import FastpinError, InputError, InputWarning
 from fastpin.model import angles, loads
 from fastpin.model.checks import check_callable, choice, instances, number, numbers, true_or_false
-from fastpin.model.crack import MOST_INCLINATION, check_inside, check_length, depth_of, other_edges, wall_of
+from fastpin.model.crack import (
+    MOST_INCLINATION,
+    check_inside,
+    check_length,
+    checked_place,
+    depth_of,
+    other_edges,
+    wall_of,
+)
 from fastpin.model.doubts import warn_of
 from fastpin.model.points import EDGES, MOST_ANGLE, Points, isotropic_material, near_rim
 from fastpin.model.problem import Problem
@@ -50,30 +58,48 @@ MOST_SLIDING = 0.1
 """Largest |K_II| in parts of K_I for which a crack keeps its direction nearly."""
 
 
+UNTOLD = float("nan")
+"""The angle of a mouth that a place tells."""
+
+
 @dataclass(frozen=True)
 class Crack:
-    """A straight crack at the edge of a hole.
+    """A straight crack at the edge of a hole, or at another edge of a plate of any outline.
 
     Parameters
     ----------
     theta : float
         Angle of its mouth, rad, counter-clockwise from the +x axis; -pi/2 is the bottom of the hole.
     angle : float
-        Its direction from the radius, rad, counter-clockwise, at most 60 deg; 0 is radial.
+        Its direction from the radius, rad, counter-clockwise, at most 60 deg; 0 is radial. At another edge it counts
+        from the normal into the plate.
     body : {"plate", "seat"}
         "plate" begins at the hole. With a bush it is the bush, and "seat" is the plate round it.
+    place : (float, float), optional
+        In place of theta, a place (x, y) on the outline or on a further hole, m, such as that of a margin. The crack
+        begins at the nearest point of the nearest edge, which may be 0.01 of the distance from the centre away. Then
+        `theta` is the angle of the place.
 
     Raises
     ------
     InputError
-        If an angle is no finite number or too large, or the body is unknown.
+        If an angle is no finite number or too large, the body is unknown, or both or none of theta and place are given.
     """
 
-    theta: float
+    theta: float = UNTOLD
     angle: float = 0.0
     body: CrackedBody = "plate"
+    place: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
+        if self.place is not None:
+            x, y = checked_place("place", self.place)
+            if self.theta is not UNTOLD and self.theta != math.atan2(y, x):
+                raise InputError("place", "stands in place of theta: leave one of them out")
+            object.__setattr__(self, "place", (x, y))
+            object.__setattr__(self, "theta", math.atan2(y, x))
+        elif self.theta is UNTOLD:
+            raise InputError("theta", "is missing: give the angle of the mouth, or a place")
         object.__setattr__(self, "theta", number("theta", self.theta, -MOST_ANGLE, MOST_ANGLE))
         object.__setattr__(self, "angle", number("angle", self.angle, -MOST_INCLINATION, MOST_INCLINATION))
         object.__setattr__(self, "body", choice("body", self.body, EDGES))
@@ -146,7 +172,9 @@ def stress_intensity(
         raise InputError("cracks", "must be a Crack or a list of them, not an empty list")
     if any(crack.body != group[0].body for crack in group):
         raise InputError("cracks", "must begin in one body")
-    edge = CrackedEdge.of(stops[0].problem, group[0].body)
+    edge = CrackedEdge.of(stops[0].problem, group[0])
+    if len(group) > 1 and any(crack.place is not None for crack in group):
+        raise InputError("cracks", "must begin at one hole; a crack at another edge stands alone")
     given = numbers("lengths", lengths, 0.0, open_low=True)
     table = given[:, None] if given.ndim == 1 else given
     if table.ndim != 2 or table.shape[1] not in (1, len(group)) or not table.size:
@@ -180,6 +208,8 @@ class CrackedEdge(NamedTuple):
         Depth of the body, in radii of the edge; infinite without a rim.
     is_free : bool
         Whether the other rim is free, so that the kernel knows it; True without a rim.
+    others : OtherEdges or None
+        The edges beyond this one in a plate of any outline.
     """
 
     problem: Problem
@@ -187,33 +217,41 @@ class CrackedEdge(NamedTuple):
     radius: float
     wall: float
     is_free: bool
+    others: Any
 
     @classmethod
-    def of(cls, problem: Problem, body: CrackedBody) -> CrackedEdge:
-        """The edge of a body. Raise :class:`InputError` if its stress is unknown."""
+    def of(cls, problem: Problem, crack: Crack) -> CrackedEdge:
+        """The edge of a crack. Raise :class:`InputError` if its stress is unknown."""
+        body = crack.body
         check_body(problem, body)
         isotropic_material("body", problem, body, "a stress intensity")
         near, bush, lug = near_rim(problem, body), problem.joint.bush, problem.plate_body.lug
         in_bush, wall = body == "plate" and bush is not None, wall_of(problem, body)
         check_inside(problem, body)
         is_free = not in_bush and (math.isinf(wall) or lug.outer_kind == FREE)
-        return cls(problem, body, near * problem.hole_radius, wall, is_free)
+        others = other_edges(problem, crack)
+        size = 1.0 if others is None else others.radius
+        return cls(problem, body, near * problem.hole_radius * size, wall, is_free, others)
 
     @property
     def beyond(self) -> Beyond:
         """The edges beyond the hole that the kernel knows."""
-        edges: Beyond | None = other_edges(self.problem, self.body)
-        return FreeRim(1.0 + self.wall if self.is_free else math.inf) if edges is None else edges
+        known: Beyond | None = self.others
+        return FreeRim(1.0 + self.wall if self.is_free else math.inf) if known is None else known
 
     def ligament(self, crack: Crack) -> float:
         """Length of the line of a crack to the edge of a plate of any outline, m; infinite in other bodies."""
-        edges = other_edges(self.problem, self.body)
-        return math.inf if edges is None else self.radius * float(edges.ligament(crack.theta, crack.angle))
+        if self.others is None:
+            return math.inf
+        return self.radius * float(self.others.ligament(*self.others.line(crack.theta, crack.angle)))
 
     def lines(self, cracks: Sequence[Crack], lengths: ArrayLike) -> tuple[CrackLine, ...]:
         """The lines of cracks of these lengths, m, for the kernel."""
-        each = zip(cracks, np.broadcast_to(lengths, len(cracks)), strict=True)
-        return tuple(CrackLine(crack.theta, crack.angle, float(length) / self.radius) for crack, length in each)
+        rays = [(crack.theta, crack.angle) for crack in cracks]
+        if self.others is not None:
+            rays = [self.others.line(*ray) for ray in rays]
+        each = zip(rays, np.broadcast_to(lengths, len(cracks)), strict=True)
+        return tuple(CrackLine(*ray, float(length) / self.radius) for ray, length in each)
 
     def depth(self, angle: float, length: float) -> float:
         """Depth of a tip, in radii of the edge, of a crack of this length, m."""
@@ -221,7 +259,7 @@ class CrackedEdge(NamedTuple):
 
     def check(self, field: str, crack: Crack, lengths: np.ndarray) -> None:
         """Raise :class:`InputError` if a length, m, is too large for the body."""
-        check_length(field, self.problem, self.body, crack.angle, float(np.max(lengths)), crack.theta)
+        check_length(field, self.problem, crack, float(np.max(lengths)))
 
     def doubts(self, field: str, crack: Crack, longest: float) -> list[InputWarning]:
         """Doubts about the kernel for a crack of this length, m."""
@@ -288,16 +326,19 @@ class CrackWeights(NamedTuple):
         else:
             alike = list(rows)
         of_rows = np.array([weights(row, beyond, n) for row in alike])
+        s = np.array([[line.length * rule(n).place for line in row] for row in rows]) * edge.radius
+        added = np.asarray(np.zeros(1) if residual_stress is None else residual_on(s, residual_stress))
+        if edge.others is not None and edge.others.mouth is not None:
+            start, along = edge.others.start(rows[0][0].mouth, rows[0][0].angle)
+            z = (start * edge.radius / edge.others.radius + s * along)[None]
+            points = Points.at_xy(z.real, z.imag)
+            return cls(points, of_rows, np.exp(2j * (np.angle(along) - points.theta[0])), added)
         found = np.array([[places(line, n) for line in row] for row in rows])  # rows, cracks, (depth, angle), points
         depth, angle = found[:, :, 0], found[:, :, 1]
         mouths = np.array([[line.mouth for line in row] for row in rows])[..., None]
         inclined = np.array([[line.angle for line in row] for row in rows])[..., None]
         theta = turns[:, None, None, None] + (mouths + angle)
-        s = np.array([[line.length * rule(n).place for line in row] for row in rows]) * edge.radius
-        added = np.zeros(1) if residual_stress is None else residual_on(s, residual_stress)
-        return cls(
-            Points.at_depth(depth * edge.radius, theta), of_rows, np.exp(2j * (inclined - angle)), np.asarray(added)
-        )
+        return cls(Points.at_depth(depth * edge.radius, theta), of_rows, np.exp(2j * (inclined - angle)), added)
 
     def intensities(self, stress: Stress) -> np.ndarray:
         """K_I and K_II in Pa times the root of the edge's radius, shape (turns, rows, cracks, 2)."""

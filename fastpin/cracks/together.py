@@ -184,12 +184,12 @@ def growth_together(
         See :func:`growth` and :func:`stress_intensity`.
     """
     stops, group = stops_of_one_problem(states), tuple(instances("cracks", cracks, Crack, "a list of Crack"))
-    if not group or any(crack.body != group[0].body for crack in group):
-        raise InputError("cracks", "must be a list of cracks that begin in one body")
-    edge = CrackedEdge.of(stops[0].problem, group[0].body)
+    if not group or any(crack.body != group[0].body or crack.place is not None for crack in group):
+        raise InputError("cracks", "must be a list of cracks that begin in one body, at one hole")
+    edge = CrackedEdge.of(stops[0].problem, group[0])
     starts, lasts = _lengths("first", first, len(group)), _lengths("last", last, len(group))
     for crack, longest in zip(group, lasts.tolist(), strict=True):
-        check_length("last", edge.problem, crack.body, crack.angle, longest, crack.theta, 1.0)
+        check_length("last", edge.problem, crack, longest, 1.0)
     whole = MOST_OF_LIGAMENT * np.array([edge.ligament(crack) for crack in group])
     ends = np.minimum(lasts, whole)
     if np.any(ends <= starts):

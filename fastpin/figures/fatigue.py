@@ -26,6 +26,7 @@ from fastpin.figures.states import Subject, with_cycles
 from fastpin.figures.style import COLOURS, MAX_NAMED, caption, draw_grid, line, quantity, short
 from fastpin.model import angles, checks
 from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.crack import mouth_words
 from fastpin.model.points import EDGES, Body, edge_body
 from fastpin.model.units import units
 from fastpin.states.choice import span_of
@@ -287,7 +288,7 @@ plot_crack_growth = plotter("plot_crack_growth", crack_growth_of)
 
 
 def _place(growth: Growth) -> str:
-    return f"{angles.from_bottom(growth.crack.theta):.1f} deg".replace("-", "−")
+    return mouth_words(growth.problem, growth.crack, ".1f").replace("-", "−")
 
 
 def _draw_cracks(look: Look, growths: Sequence[Growth]) -> Sheet:

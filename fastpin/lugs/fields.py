@@ -8,7 +8,6 @@ over the other edges. Lengths are in hole radii.
 from __future__ import annotations
 
 import json
-import math
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -68,7 +67,7 @@ class PlateField:
     apart = 0.25  # hole radii
 
     def __init__(self, lug: Lug, order: int) -> None:
-        self.order = order
+        self.order, self._lug = order, lug
         self.kolosov, response = lug.kolosov, respond(lug, order, FINENESS, lambda done: None)
         self.edges = edges = response.edges
         size, (moved, pulled) = 2 + 4 * order, response.whole()
@@ -87,8 +86,7 @@ class PlateField:
     def contains(self, z: np.ndarray) -> np.ndarray:
         """Whether points (m,) lie within the outline, but in no further hole; edges belong to the plate."""
         away = np.array([distances(part, z) for part in self._edges]).min(axis=0)
-        turns = np.array([part.turn_round(z) for part in self._edges]).sum(axis=0)
-        return np.asarray((away <= CLOSEST) | (turns > math.pi))
+        return np.asarray((away <= CLOSEST) | self._lug.surrounds(z * self._lug.hole_radius))
 
     @cached_property
     def rims(self) -> tuple[np.ndarray, list[str]]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
@@ -23,6 +23,7 @@ import numpy as np
 from fastpin.bodies.compliance import Compliance
 from fastpin.lugs.cauchy import HOLE, EdgeField, traction_on
 from fastpin.lugs.fields import lug_of
+from fastpin.lugs.mouths import Mouth
 from fastpin.lugs.outline import Part, distances
 from fastpin.lugs.panels import Edges, Fineness
 from fastpin.lugs.plates import PlateEquations, boundaries
@@ -42,28 +43,59 @@ APART = 2.0
 SMALL, MOST_POINTS = 5.0, 200
 """Length of a line, hole radii, from which more points keep its images, and most points of a line."""
 
+SKIPPED, SHARE = 1e-9, 0.1
+"""Length of a line at its mouth that is no part of its edge, hole radii, and part of it that its edge may come near."""
+
+BESIDE = 0.1
+"""Least distance of a tip from edges beside its line, in parts of its length. With less, K has errors above 1e-4."""
+
 Ray = tuple[float, float]
 """Angle of the mouth of a crack and its direction from the radius, rad."""
 
 
 @dataclass(frozen=True)
 class OtherEdges:
-    """The edges beyond the hole, as cracks at the hole see them.
+    """The edges beyond the one at which cracks begin: beyond the hole, or beyond the edge with a :class:`Mouth`.
 
-    Lines of cracks are triples: angle of the mouth and direction from the radius, rad, and the length in hole radii.
+    Lines of cracks are triples: angle of the mouth and direction from the radius, rad, and the length. Lengths are in
+    radii of the hole, or of the circle of the mouth, whose angle is 0 then.
     """
 
     body: Compliance
+    mouth: Mouth | None = None
 
     is_round: ClassVar[bool] = False
 
+    def at(self, place: complex, length: Callable[[float], str]) -> OtherEdges:
+        """The edges beyond the one at a place, hole radii. See :meth:`Mouth.at`."""
+        return OtherEdges(self.body, Mouth.at(lug_of(self.body), place, length))
+
+    def line(self, theta: float, angle: float) -> Ray:
+        """Angle of the mouth and direction from the radius of a crack; at a mouth `angle` counts from its normal."""
+        return (theta, angle) if self.mouth is None else (0.0, self.mouth.turn + angle)
+
+    @property
+    def radius(self) -> float:
+        """Radius of the circle at which cracks begin, hole radii."""
+        return 1.0 if self.mouth is None else self.mouth.radius
+
+    def start(self, mouth: float, angle: float) -> tuple[complex, complex]:
+        """The mouth of a crack and its direction, hole radii."""
+        if self.mouth is None:
+            return cmath.exp(1j * mouth), cmath.exp(1j * (mouth + angle))
+        return self.mouth.place, self.mouth.normal * cmath.exp(1j * angle)
+
     def ligament(self, mouth: float, angle: float) -> float:
-        """Length of the line of a crack to the edge at which it leaves the plate, hole radii."""
-        return _ligament(self.body, mouth, angle)
+        """Length of the line of a crack to the edge at which it leaves the plate."""
+        return _ligament(self, mouth, angle) / self.radius
+
+    def known(self, mouth: float, angle: float) -> float:
+        """Length of the line up to which its mirror image lies outside of the plate, and K is known."""
+        return _known(self, mouth, angle) / self.radius
 
     def deepest(self, lines: Sequence[tuple[float, float, float]]) -> float:
         """The largest part of its ligament that a crack takes."""
-        return max(length / self.ligament(mouth, angle) for mouth, angle, length in lines)
+        return max(length / self.known(mouth, angle) for mouth, angle, length in lines)
 
     def influence(
         self, lines: Sequence[tuple[float, float, float]], s: np.ndarray, t: np.ndarray
@@ -74,22 +106,22 @@ class OtherEdges:
         """
         rays = tuple((mouth, angle) for mouth, angle, _ in lines)
         part = SHALLOW if self.deepest(lines) <= SHALLOW else DEEP
-        ends = np.array([part * self.ligament(*ray) for ray in rays])[:, None]
-        kept = _kept(self.body, rays, part)
+        ends = np.array([part * self.known(*ray) for ray in rays])[:, None]
+        kept = _kept(self, rays, part)
         left, right = (_interpolation(distances / ends, kept[0].shape[0] // len(rays)) for distances in (s, t))
-        straight, mirrored = (left @ one @ right.T for one in kept)
+        straight, mirrored = (self.radius * (left @ one @ right.T) for one in kept)
         return straight, mirrored
 
 
-def _count(edges: Edges, lines: Sequence[Part]) -> int:
-    """Number of points of each line at which images are kept.
+def _count(nodes: np.ndarray, lines: Sequence[Part]) -> int:
+    """Number of points of each line at which images in edges with these nodes are kept.
 
     Images lie about twice as far from a line as the edges, and limit the interpolation by Bernstein's ellipse through
     them. In a wide plate the hole is small for its lines.
     """
     least = math.inf
     for line in lines:
-        place = 2.0 * (edges.z[edges.part_of_node >= HOLE] - line.start) / (line.end - line.start) - 1.0
+        place = 2.0 * (nodes - line.start) / (line.end - line.start) - 1.0
         mirrored = 2.0 * place - np.clip(place.real, -1.0, 1.0)
         root = np.sqrt(mirrored - 1.0) * np.sqrt(mirrored + 1.0)
         least = min(least, float(np.abs(mirrored + root).min()))
@@ -114,10 +146,37 @@ def _interpolation(share: np.ndarray, count: int) -> np.ndarray:
 
 
 @lru_cache(maxsize=1024)
-def _ligament(body: Compliance, mouth: float, angle: float) -> float:
-    lug = lug_of(body)
-    start, along = cmath.exp(1j * mouth), cmath.exp(1j * (mouth + angle))
-    return min(part.crossing(start * lug.hole_radius, along) for part in lug.edges) / lug.hole_radius
+def _ligament(edges: OtherEdges, mouth: float, angle: float) -> float:
+    lug, (start, along) = lug_of(edges.body), edges.start(mouth, angle)
+    parts, skipped = lug.edges, 0.0
+    if edges.mouth is not None:  # the edge itself is left out
+        parts, skipped = (*parts, *lug.contact_edge), SKIPPED
+    start = (start + skipped * along) * lug.hole_radius
+    return skipped + min(part.crossing(start, along) for part in parts) / lug.hole_radius
+
+
+@lru_cache(maxsize=1024)
+def _known(edges: OtherEdges, mouth: float, angle: float) -> float:
+    ligament, begins = _ligament(edges, mouth, angle), edges.mouth
+    if begins is None:
+        return ligament
+    lug, (start, along) = lug_of(edges.body), edges.start(mouth, angle)
+    lengths = ligament * np.linspace(0.0, 1.0, 201)[1:]
+    line = start + lengths * along
+    mirrored = lug.surrounds(begins.mirrored(line) * lug.hole_radius)
+    if not begins.is_inside:  # the potentials have a pole at the centre of the circle, too
+        mirrored |= lug.surrounds((start - begins.radius * begins.normal) * lug.hole_radius * np.ones(1))
+    away = np.min([distances(part, line) for part in _other_parts(edges)], axis=0)
+    bad = np.flatnonzero(mirrored | (away < BESIDE * np.minimum(lengths, ligament - lengths)))
+    return float(lengths[bad[0] - 1] if bad.size and bad[0] else lengths[0] if bad.size else ligament)
+
+
+def _other_parts(edges: OtherEdges) -> list[Part]:
+    """All parts that do not lie on the circle of the mouth, hole radii."""
+    lug = lug_of(edges.body)
+    parts = [part.scaled(1.0 / lug.hole_radius) for part in (*lug.edges, *lug.contact_edge)]
+    extent, middle = lug.extent / lug.hole_radius, np.array([0.5])
+    return [part for part in parts if edges.mouth is None or not edges.mouth.follows(part.at(middle), extent)[0]]
 
 
 @lru_cache(maxsize=1)
@@ -128,10 +187,11 @@ def _shared(body: Compliance) -> PlateEquations:
     return _equations(body, [(part, APART * (1.0 - SHALLOW)) for part in hole])
 
 
-def _equations(body: Compliance, beside: Sequence[tuple[Part, float]]) -> PlateEquations:
+def _equations(body: Compliance, beside: Sequence[tuple[Part, float]], to_hole: bool = False) -> PlateEquations:
+    """The equations on edges with lines beside them, also beside the hole if a line leads to it."""
     lug = lug_of(body)
-    first, *others = boundaries(lug, HARMONICS)
-    edges = Edges([first, *(replace(loop, beside=tuple(beside)) for loop in others)], FINENESS)
+    first, *others = (replace(loop, beside=tuple(beside)) for loop in boundaries(lug, HARMONICS))
+    edges = Edges([first if to_hole else replace(first, beside=()), *others], FINENESS)
     return PlateEquations(lug, edges, lambda done: None)
 
 
@@ -144,65 +204,90 @@ def is_fine(edges: Edges, lines: Sequence[Part]) -> bool:
 
 
 @lru_cache(maxsize=256)
-def _kept(body: Compliance, rays: tuple[Ray, ...], part: float) -> tuple[np.ndarray, np.ndarray]:
+def _kept(other: OtherEdges, rays: tuple[Ray, ...], part: float) -> tuple[np.ndarray, np.ndarray]:
     """The coefficients between the kept points of all lines."""
-    longest = np.array([part * _ligament(body, *ray) for ray in rays])
-    starts = np.exp(1j * np.array([mouth for mouth, _ in rays]))
-    along = np.exp(1j * np.array([mouth + angle for mouth, angle in rays]))
+    longest = np.array([part * _known(other, *ray) for ray in rays])
+    starts, along = (np.array(each) for each in zip(*(other.start(*ray) for ray in rays), strict=True))
     ends = [Part("", *pair) for pair in zip(starts.tolist(), (starts + longest * along).tolist(), strict=True)]
-    equations = _shared(body)
-    if not is_fine(equations.edges, ends):
-        equations = _equations(body, [(end, APART) for end in ends])
-    count = _count(equations.edges, ends)
+    equations = _shared(other.body) if other.mouth is None else _from_edge(other, ends[0])
+    if other.mouth is None and not is_fine(equations.edges, ends):
+        equations = _equations(other.body, [(end, APART) for end in ends])
+    nodes = equations.edges.z[equations.edges.part_of_node >= HOLE]
+    if other.mouth is not None:
+        nodes = equations.edges.z[~other.mouth.follows(equations.edges.z, equations.edges.extent)]
+    count = _count(nodes, ends)
     s = np.multiply.outer(longest, _chebyshev(count)).ravel()
     starts, along = np.repeat(starts, count), np.repeat(along, count)
-    return image(equations, starts + s * along, along, starts)
+    return image(equations, starts + s * along, along, starts, other.mouth)
+
+
+def _from_edge(other: OtherEdges, line: Part) -> PlateEquations:
+    """The equations for cracks from an edge beyond the hole. Its panels do not shrink towards the mouth."""
+    away = min(float(distances(part, np.array([line.start]))[0]) for part in _other_parts(other))
+    share = min(SHARE, 0.5 * away / line.length)
+    inner = Part("", line.start + share * (line.end - line.start), line.end)
+    return _equations(other.body, [(inner, APART)], True)
 
 
 def image(
-    equations: PlateEquations, z: np.ndarray, direction: np.ndarray, mouth: np.ndarray
+    equations: PlateEquations,
+    z: np.ndarray,
+    direction: np.ndarray,
+    place: np.ndarray,
+    mouth: Mouth | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """The coefficients of g and of conj(g) in the tractions of images, both (m, m).
 
-    Points z (m,) are sources and receivers. They lie on lines with a `direction` from a `mouth`, both (m,).
+    Points z (m,) are sources and receivers. They lie on lines with a `direction` from a `place`, both (m,): on the
+    hole, or at the `mouth`.
     """
     edges = equations.edges
-    outer = edges.part_of_node >= HOLE
+    if mouth is None:
+        others, normal, radius, is_inside = edges.part_of_node >= HOLE, place, 1.0, False
+    else:
+        others = ~mouth.follows(edges.z, edges.extent)
+        normal, radius, is_inside = np.full(z.size, mouth.normal), mouth.radius, mouth.is_inside
     tractions = np.zeros((edges.z.size, 2 * z.size), dtype=complex)
     moved = np.zeros_like(tractions)
-    along = 1j * edges.normals[outer][:, None]
+    along = 1j * edges.normals[others][:, None]
+    away = (edges.z[others][:, None] - place) / radius
     for k, g in enumerate((1.0, 1j)):
         columns = slice(k * z.size, (k + 1) * z.size)
         potential, spread, displacement = dislocation(
-            edges.z[outer][:, None], z, 0.5 * np.conj(g) * direction, mouth, equations.kolosov
+            away, (z - place) / radius, 0.5 * np.conj(g) * direction, normal, equations.kolosov, is_inside
         )
-        tractions[outer, columns] = -traction_on(potential, spread, along)
-        moved[outer, columns] = -displacement
+        tractions[others, columns] = -traction_on(potential, spread, along) / radius
+        moved[others, columns] = -displacement
     (u_x, u_y), (t_x, t_y) = equations.solve(tractions, moved)
-    potential, spread = EdgeField.of(edges, equations.kolosov, u_x + 1j * u_y, t_x + 1j * t_y, True).inside(z)
+    field = EdgeField.of(edges, equations.kolosov, u_x + 1j * u_y, t_x + 1j * t_y, True)
+    potential, spread = field.inside(z)
     found = 2.0 * potential.real + direction[:, None] ** 2 * spread
     normal, tangential = found[:, : z.size], found[:, z.size :]
     return 0.5 * (normal - 1j * tangential), 0.5 * (normal + 1j * tangential)
 
 
 def dislocation(
-    z: np.ndarray, z0: np.ndarray, gamma: np.ndarray, mouth: np.ndarray, kolosov: float
+    away: np.ndarray, source: np.ndarray, gamma: np.ndarray, mouth: np.ndarray, kolosov: float, is_inside: bool = False
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Phi, S and 2G u at points z of dislocations at z0 beside the hole in the infinite plate; (T60).
+    """Phi, S and 2G u of dislocations beside the free unit circle, outside of it or inside; (T60).
 
-    The displacement jumps on the line from the dislocation to the mouth of its crack only.
+    Points and dislocations have the distances `away` and `source` from the place `mouth` on the circle. The
+    displacement jumps on the line from the dislocation to the mouth only.
     """
-    back, square, conj = z0.conj(), np.abs(z0) ** 2, gamma.conj()
-    q, w = square - 1.0, 1.0 - z * back
-
-    def potential_at(at: np.ndarray) -> np.ndarray:
-        w = 1.0 - at * back
-        return np.asarray(gamma / (at - z0) + gamma * back / w + conj * q / (back * w * w))
-
-    potential = potential_at(z)
-    slope = -gamma / (z - z0) ** 2 + gamma * (back / w) ** 2 + 2.0 * conj * q / w**3
-    psi = (potential_at(1.0 / z.conj()).conj() + potential) / z**2 - slope / z
-    turns = np.log((z - z0) / (z - mouth)) + np.log((z - mouth) / (z - 1.0 / back))
+    z, z0 = mouth + away, mouth + source
+    back, conj, gap = z0.conj(), gamma.conj(), away - source
+    Q, q = (2.0 * (mouth.conj() * each).real + np.abs(each) ** 2 for each in (away, source))
+    w = -(away * mouth.conj() + mouth * source.conj() + away * source.conj())
+    potential = gamma / gap + gamma * back / w + conj * q / (back * w * w)
+    inverted = gamma / w.conj() + gamma * back / gap.conj() + conj * q * z.conj() / (back * gap.conj() ** 2)
+    slope = -gamma / gap**2 + gamma * (back / w) ** 2 + 2.0 * conj * q / w**3
+    spread = Q / z * slope + inverted.conj() / z + potential / z**2
+    turns = np.log(gap / away) + np.log(-away * back / w)
     phi = gamma * turns + conj * q / (back**2 * w)
-    mirrored = gamma * (np.log(square) - turns.conj()) + conj * q / (back**2 * (1.0 - back / z.conj()))
-    return potential, z.conj() * slope + psi, kolosov * phi + mirrored - (z - 1.0 / z.conj()) * potential.conj()
+    mirrored = gamma * (np.log1p(q) - turns.conj()) + conj * q * z.conj() / (back**2 * gap.conj())
+    moved = kolosov * phi + mirrored - Q / z.conj() * potential.conj()
+    if is_inside:  # a stress that makes the centre regular
+        even = -q * (gamma / z0).real
+        potential, spread = potential + even, spread + 2.0 * even / z**2
+        moved = moved + even * ((kolosov - 1.0) * z + 2.0 / z.conj())
+    return potential, spread, moved

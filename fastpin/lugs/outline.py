@@ -312,6 +312,10 @@ class Lug:
         """All other parts, with the plate to the left: outline, then further holes."""
         return self.outline + tuple(part for hole in self.holes for part in hole.parts)
 
+    def surrounds(self, z: np.ndarray) -> np.ndarray:
+        """Whether points (m,), m, lie within the outline, but in no further hole."""
+        return np.asarray(np.array([part.turn_round(z) for part in self.edges]).sum(axis=0) > math.pi)
+
     @property
     def extent(self) -> float:
         """Largest distance of a point of the outline from the hole's centre, m."""

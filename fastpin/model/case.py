@@ -79,13 +79,13 @@ def beside_of(case: Any) -> dict[str, Any]:
 def questions_of(case: Any) -> dict[str, Any]:
     """The sections of a case as they are answered, by name.
 
-    A crack in the plate without a residual stress of its own takes that of the fatigue: both have one hole.
+    A crack at the plate's hole without a residual stress of its own takes that of the fatigue: both have one hole.
     """
     found = beside_of(case)
     crack, fatigue = found.get("crack"), found.get("fatigue")
     if crack is None or fatigue is None or crack.residual_stress is not None:
         return found
-    if owner_of(case.problem, crack.body) == "plate":
+    if crack.place is None and owner_of(case.problem, crack.body) == "plate":
         found["crack"] = replace(crack, residual_stress=fatigue.residual_stress)
     return found
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import itertools
 import math
 from collections.abc import Sequence
@@ -25,7 +24,7 @@ MOST_INCLINATION = 60.0 * DEGREE
 
 @dataclass(frozen=True)
 class CrackGrowth:
-    """A crack at the edge of the hole, and how it grows.
+    """A crack at the edge of the hole, or at another edge of a plate of any outline, and how it grows.
 
     Parameters
     ----------
@@ -34,10 +33,12 @@ class CrackGrowth:
     law : Walker or Nasgro, optional
         Law of growth. Unless given, it is the law of the body's material.
     theta : float, optional
-        Angle of its mouth, rad, counter-clockwise from the +x axis; where a crack grows fastest unless given.
+        Angle of its mouth, rad, counter-clockwise from the +x axis. With neither it nor a place, the crack begins at
+        the hole where it grows fastest.
     angle : float
         Its direction from the radius, rad, counter-clockwise, at most 60 deg.
     body : {"plate", "seat"}
+    place : (float, float), optional
         See :class:`fastpin.cracks.Crack`.
     residual_stress : float or sequence of (float, float), optional
         Normal stress on the line of the crack that is added at all times, Pa: a number, or pairs of a distance to the
@@ -56,6 +57,7 @@ class CrackGrowth:
     angle: float = 0.0
     body: str = "plate"
     residual_stress: float | Sequence[Sequence[float]] | None = None
+    place: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
         check_fields(self, positive, "first last")
@@ -67,6 +69,9 @@ class CrackGrowth:
         check_fields(self, number, "angle", -MOST_INCLINATION, MOST_INCLINATION)
         check_fields(self, choice, "body", EDGES)
         check_fields(self, checked_residual, "residual_stress", optional=True)
+        check_fields(self, checked_place, "place", optional=True)
+        if self.theta is not None and self.place is not None:
+            raise InputError("place", "stands in place of theta: leave one of them out")
 
     def residual(self, s: np.ndarray) -> np.ndarray:
         """The residual stress at distances to the mouth, m, of any shape; 0 unless one is given, Pa."""
@@ -77,6 +82,8 @@ class CrackGrowth:
         found = given_fields(self)
         if isinstance(self.residual_stress, tuple):
             found["residual_stress"] = [list(pair) for pair in self.residual_stress]
+        if self.place is not None:
+            found["place"] = list(self.place)
         if self.law is not None:
             found["law"] = law_entries(self.law)
         if self.theta is not None:
@@ -112,42 +119,70 @@ def depth_of(angle: float, length: float) -> float:
     return abs(1.0 + length * complex(math.cos(angle), math.sin(angle))) - 1.0
 
 
-def other_edges(problem: Problem, body: str) -> Any:
-    """The edges beyond the hole of a plate of any outline, :class:`fastpin.lugs.OtherEdges`; None for another body."""
-    in_bush = body == "plate" and problem.joint.bush is not None
-    return None if in_bush else problem.plate_body.lug.other_edges
+def other_edges(problem: Problem, crack: Any) -> Any:
+    """The edges of a plate of any outline beyond that of a crack, :class:`fastpin.lugs.OtherEdges`; else None.
+
+    The crack is a :class:`fastpin.cracks.Crack` or a :class:`CrackGrowth`.
+
+    Raises
+    ------
+    InputError
+        If the place of the crack is no mouth, or the plate has no other edges.
+    """
+    in_bush = crack.body == "plate" and problem.joint.bush is not None
+    edges = None if in_bush else problem.plate_body.lug.other_edges
+    if crack.place is None:
+        return edges
+    if edges is None:
+        words = 'is on the plate round the bush: body = "seat"' if in_bush else "needs a plate of any outline"
+        raise InputError("place", words)
+    radius = problem.hole_radius * near_rim(problem, edge_of(crack.body))
+    return edges.at(complex(*crack.place) / radius, lambda value: units(problem)["length"].text(value * radius))
 
 
-def check_length(
-    field: str,
-    problem: Problem,
-    body: str,
-    angle: float,
-    longest: float,
-    theta: float | None = None,
-    part: float = MOST_OF_LIGAMENT,
-) -> None:
+def mouth_words(problem: Problem, crack: Any, form: str = "z.2f") -> str:
+    """The mouth of a crack that has one: its angle from the bottom in this form, or its edge and place."""
+    if crack.place is None:
+        assert crack.theta is not None
+        return f"{degrees_at(crack.theta):{form}} deg"
+    x, y = (units(problem)["length"].text(value, 4) for value in crack.place)
+    return f"x = {x}, y = {y} on the edge {as_toml(edge_name(problem, crack))}"
+
+
+def edge_name(problem: Problem, crack: Any) -> str | None:
+    """The name of the edge at which a crack begins; None at the hole."""
+    return None if crack.place is None else other_edges(problem, crack).mouth.edge
+
+
+def check_length(field: str, problem: Problem, crack: Any, longest: float, part: float = MOST_OF_LIGAMENT) -> None:
     """Raise :class:`InputError` if a length, m, is too large for the body.
 
-    In a plate of any outline a crack at `theta` may take a `part` of its ligament.
+    In a plate of any outline a crack whose mouth is known may take a `part` of its ligament.
     """
-    length = units(problem)["length"]
+    length, body = units(problem)["length"], crack.body
     radius = problem.hole_radius * near_rim(problem, edge_of(body))
-    wall, edges = wall_of(problem, body), other_edges(problem, body)
+    wall, edges = wall_of(problem, body), other_edges(problem, crack)
     if is_above(longest, 1e4 * radius):  # up to there it was checked against the crack in a plate without a hole
         raise InputError(field, f"must be at most 10000 radii of the hole, not {length.text(longest)}")
-    if is_above(depth_of(angle, longest / radius), MOST_OF_WALL * wall):
+    if is_above(depth_of(crack.angle, longest / radius), MOST_OF_WALL * wall):
         words = f"must end within {MOST_OF_WALL:g} of the wall of {length.text(wall * radius)}"
         raise InputError(field, f"{words}, not be {length.text(longest)}")
-    if edges is None or theta is None:
+    if edges is None or (crack.theta is None and crack.place is None):
         return
-    ligament = edges.ligament(theta, angle) * radius
+    line, size = edges.line(crack.theta, crack.angle), edges.radius * radius
+    ligament, known = edges.ligament(*line) * size, MOST_OF_LIGAMENT * edges.known(*line) * size
     if is_above(longest, part * ligament):
-        end = radius * cmath.exp(1j * theta) + ligament * cmath.exp(1j * (theta + angle))
+        start, along = edges.start(*line)
+        end = radius * start + ligament * along
         within = "its ligament" if part == 1.0 else f"{part:g} of its ligament"
         words = f"must end within {within} of {length.text(ligament)}, not be {length.text(longest)}"
         place = f"x = {length.text(end.real)}, y = {length.text(end.imag)}"
         raise InputError(field, f"{words}: the line of the crack leaves the plate at {place}")
+    if known < MOST_OF_LIGAMENT * ligament and is_above(longest, known):
+        words = f"must be at most {length.text(known)}, not {length.text(longest)}"
+        raise InputError(
+            field, f"{words}: a longer crack comes too near to another edge, or its mirror image to the plate"
+        )
 
 
 def check_crack(problem: Problem, crack: CrackGrowth) -> None:
@@ -157,7 +192,7 @@ def check_crack(problem: Problem, crack: CrackGrowth) -> None:
         raise InputError("body", f"the {owner_of(problem, body)} is rigid: no crack grows in it")
     isotropic_material("body", problem, body, "a stress intensity")
     check_inside(problem, body)
-    check_length("last", problem, body, crack.angle, crack.last, crack.theta, 1.0)
+    check_length("last", problem, crack, crack.last, 1.0)
     law_of(problem, crack)
 
 
@@ -206,6 +241,13 @@ def crack_from(**given: Any) -> CrackGrowth:
         if given.get(name) is None:
             raise InputError(name, "is missing: give the length of the crack, m")
     return CrackGrowth(**given)
+
+
+def checked_place(name: str, given: object) -> tuple[float, float]:
+    """Check a place (x, y), m."""
+    if not isinstance(given, (list, tuple, np.ndarray)) or len(given) != 2:
+        raise InputError(name, f"must be a pair of coordinates, x and y, not {as_toml(given)}")
+    return number(name, given[0]), number(name, given[1])
 
 
 def residual_at(stress: Any, s: np.ndarray) -> np.ndarray:

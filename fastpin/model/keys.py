@@ -72,7 +72,7 @@ CASE: dict[str, Any] = {
     "load": LOAD_KIND | {"mean": LOAD_KIND, "amplitude": LOAD_KIND},
     "wear": {key: profile("wear coefficient") for key in ("coefficient", "pin", "plate")},
     "fatigue": {"length": "length", "residual_stress": RESIDUAL},
-    "crack": _of("length", "first", "last") | {"law": LAW, "residual_stress": RESIDUAL},
+    "crack": _of("length", "first", "last", "place") | {"law": LAW, "residual_stress": RESIDUAL},
     "strength": _of("length", "distance", "tension", "compression"),
 }  # fmt: skip
 """The kinds of a case file by section and key. A key that is not here has no unit."""

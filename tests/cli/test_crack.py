@@ -10,13 +10,16 @@ import pytest
 
 import fastpin
 from fastpin import cracks, damage
-from fastpin.assess.crack import growth_line
+from fastpin.assess.crack import crack_words, growth_line
 from fastpin.bodies import Bushing
 from fastpin.casefile import case_text
+from fastpin.lugs import Lug
+from fastpin.lugs.outline import rectangle
 from fastpin.model.case import questions_of
 from fastpin.report import json_schema
 from tests.support.case_texts import IN_CYCLES
 from tests.support.commands import printed, refused, said
+from tests.support.lugs import outlined
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -83,6 +86,9 @@ def test_a_cycle_of_corners_alone_is_noted():
         (["--at", "0", "--last", "1e-5"], "--last: must be longer than the first length"),
         (["--at", "0", "--threshold-range", "-1"], "--threshold-range: must not be negative"),
         (["--at", "0", "--body", "seat"], '--body: "seat" is the edge of the plate round a bush'),
+        (["--place", "22e-3", "0"], "--place: needs a plate of any outline"),
+        (["--place", "22e-3", "up"], '--place: must be a number, not "up"'),
+        (["--place", "22e-3", "0", "--at", "0"], "--place: stands in place of theta: leave one of them out"),
         (["--at", "0", "-o", "a.txt"], "--output: must"),
         (["--at", "0", "--last", "1e3"], "--last: must be at most 10000 radii of the hole"),
         (["--at", "0", "--law", "nasgro"], "--m: is no constant of the law nasgro"),
@@ -208,3 +214,27 @@ def test_json_has_the_growth_and_its_margins(stored):
     assert margins["growth"] == pytest.approx(1e6 / found.delta_K[0] - 1.0)
     assert printed("crack", stored, *law, "--json", "a.json").startswith("crack at 66.00 deg")
     assert json.loads(Path("a.json").read_text()) == document
+
+
+def test_the_place_that_a_text_names_is_a_key_of_the_case_and_an_option():
+    """In millimetres, with a compliance that means nothing."""
+    outline = rectangle((-22e-3, 22e-3), (-22e-3, 60e-3))
+    plate = outlined(Lug(0.33, "strain", 10e-3, outline, {"top": "both"}))
+    Path("lug.json").write_text(plate.to_text())
+    text = """units = "mm, N, MPa"
+plate = { E = 70e3, nu = 0.33 }
+pin.material = "steel"
+contact = { hole_radius = 10, clearance = 0.02, friction = 0.3 }
+plate_body.file = "lug.json"
+load = [{ P = [300, 30], repeat = 2 }]
+solve.nodes = 61
+crack = { first = 1, last = 2, place = [22.1, 50], law = { law = "paris", C = 1e-10, m = 3 } }
+"""
+    Path("case.toml").write_text(text)
+    crack = fastpin.read_case("case.toml").crack
+    assert crack.place == pytest.approx((22.1e-3, 50e-3))
+    text_of_crack = crack_words(fastpin.read_case("case.toml").problem, crack)
+    assert 'at x = 22.1 mm, y = 50 mm on the edge "right", walker' in text_of_crack
+    words = 'place: must lie on an edge beyond the hole; the nearest one, "right", is 2 mm away'
+    Path("case.toml").write_text(text.replace("22.1", "20"))
+    assert words in refused("check", "case.toml")

@@ -8,8 +8,19 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.assess import outputs
+from fastpin.assess.crack import GROWTH, growth_line
 from fastpin.bodies import Compliance, Ring
-from fastpin.cracks import Crack, CrackFate, growth, growth_along_edge, growth_together, paris, stress_intensity
+from fastpin.cracks import (
+    Crack,
+    CrackFate,
+    growth,
+    growth_along_edge,
+    growth_together,
+    paris,
+    planned_growth,
+    stress_intensity,
+)
 from fastpin.cracks.intensity import CrackedEdge
 from fastpin.errors import InputError
 from fastpin.lugs import fields, images
@@ -17,6 +28,7 @@ from fastpin.lugs.outline import Lug
 from fastpin.lugs.panels import Fineness
 from fastpin.lugs.plates import hole_compliance, respond
 from fastpin.model.crack import CrackGrowth, check_crack, check_length
+from fastpin.model.units import units
 from tests.support.cracks import LIKE, M, problem_of
 from tests.support.lugs import lug_with_nose, outlined
 from tests.support.outlines import FreeOutline
@@ -128,11 +140,15 @@ def test_a_crack_that_leaves_the_plate_is_refused():
     with pytest.raises(InputError, match=r"first: must lie within 0.95 of the ligament at 90.00 deg, 11.4 mm"):
         growth(states, Crack(0.0), LAW, 11.5e-3, 11.9e-3)
     check_crack(problem, CrackGrowth(1e-3, 13e-3, LAW))  # at its fastest place it ends with the ligament
-    check_length("last", problem, "plate", 0.0, 11.4e-3, 0.0)
+    check_length("last", problem, Crack(0.0), 11.4e-3)
 
 
 TOGETHER = {
-    "cracks: must be a list of cracks that begin in one body": ([Crack(0.0), Crack(1.0, body="seat")], 1e-3, 2e-3),
+    "cracks: must be a list of cracks that begin in one body, at one hole": (
+        [Crack(0.0), Crack(1.0, body="seat")],
+        1e-3,
+        2e-3,
+    ),
     "cracks: must be a list of Crack": (3, 1e-3, 2e-3),
     "first: must be a length, or 2 of them": ([Crack(0.0), Crack(1.0)], [1e-3, 1e-3, 1e-3], 2e-3),
     "first: must be above 0, not 0": ([Crack(0.0), Crack(1.0)], 0.0, 2e-3),
@@ -153,3 +169,60 @@ def test_two_cracks_of_an_infinite_plate_grow_together(small_states):
     law = replace(LAW, toughness=50.0 * M)
     found = growth_together(small_states, [Crack(-0.5), Crack(0.5)], law, 1e-3, 1.1e-3)
     assert repr(found).startswith("<GrowthTogether of 2 cracks: grow from 1 mm and 1 mm to 1.1 mm and ")
+
+
+def test_a_crack_begins_at_another_edge(states):
+    """At both sides of the shank, which are mirrored; at the hole the same crack is another one."""
+    right, left = (Crack(angle=0.3 * sign, place=(sign * 22.1e-3, 50e-3)) for sign in (1.0, -1.0))
+    one, other = (stress_intensity(states, crack, [1e-3, 8e-3]) for crack in (right, left))
+    assert pytest.approx(other.K_I, rel=0.05) == one.K_I  # friction
+    assert one.K_I[0, 0] == pytest.approx(1.1 * 1e6 / 44e-3 * math.sqrt(math.pi * 1e-3), rel=0.1)
+    found = growth(states, Crack(place=(22e-3, 50e-3)), LAW, 1e-3, 2e-3)
+    assert (found.ligament, found.fate) == (pytest.approx(44e-3), CrackFate.GROWS)
+    assert repr(found).startswith('<Growth of a crack at x = 22 mm, y = 50 mm on the edge "right": grows from 1 mm')
+    planned = planned_growth(states, CrackGrowth(1e-3, 2e-3, LAW, place=(22e-3, 50e-3)))
+    assert planned.life == found.life
+    document = outputs.document(GROWTH, found, units(found.problem))
+    assert (document["edge"], document["x"], document["y"]) == ("right", pytest.approx(22e-3), pytest.approx(50e-3))
+    assert growth_line(found).startswith('crack at x = 22 mm, y = 50 mm on the edge "right": grows')
+
+
+PLACES = {
+    "theta: is missing: give the angle of the mouth, or a place": lambda states: Crack(),
+    "place: stands in place of theta: leave one of them out": lambda states: Crack(0.0, place=(1e-3, 1e-3)),
+    "place: must be a pair of coordinates, x and y, not 3": lambda states: Crack(place=3),
+    'place: must lie on an edge beyond the hole; the nearest one, "right", is 2 mm away': lambda states: growth(
+        states, Crack(place=(20e-3, 50e-3)), LAW, 1e-3, 2e-3
+    ),
+    "last: must be at most 18.81 mm, not 40 mm: a longer crack comes too near": lambda states: growth(
+        states, Crack(place=(22e-3, 98e-3)), LAW, 1e-3, 40e-3
+    ),
+    "last: must end within its ligament of 44 mm, not be 50 mm: the line of the crack leaves the plate at x = -22 mm": (
+        lambda states: growth(states, Crack(place=(22e-3, 50e-3)), LAW, 1e-3, 50e-3)
+    ),
+    "cracks: must begin at one hole; a crack at another edge stands alone": lambda states: stress_intensity(
+        states, [Crack(place=(22e-3, 50e-3)), Crack(0.0)], [1e-3]
+    ),
+    "cracks: must be a list of cracks that begin in one body, at one hole": lambda states: growth_together(
+        states, [Crack(place=(22e-3, 50e-3))], LAW, 1e-3, 2e-3
+    ),
+}
+
+
+@pytest.mark.parametrize("words", PLACES)
+def test_refused_places(words, outlined_states):
+    with pytest.raises(InputError) as refused:
+        PLACES[words](outlined_states)
+    assert str(refused.value).startswith(words)
+
+
+@pytest.fixture(scope="module")
+@for_gate
+def outlined_states() -> list[fastpin.State]:
+    """States of a lug whose compliance means nothing."""
+    return states_of(outlined(lug()))
+
+
+def test_only_plates_of_any_outline_have_other_edges(small_states):
+    with pytest.raises(InputError, match="place: needs a plate of any outline"):
+        growth(small_states, Crack(place=(22e-3, 50e-3)), LAW, 1e-3, 2e-3)

@@ -13,6 +13,7 @@ from fastpin.lugs.outline import Hole, Lug, Part, rectangle
 from fastpin.lugs.panels import Edges, Fineness
 from fastpin.lugs.plates import PlateEquations, boundaries
 from tests.support.lugs import disc, lug_with_nose, outlined, plate
+from tests.support.mouths import intensity_of
 from tests.support.outlines import FreeOutline
 
 
@@ -49,26 +50,41 @@ def pulled(equations):
     return traction
 
 
-def test_a_dislocation_leaves_the_hole_free_and_jumps_on_its_crack_only():
+@pytest.mark.parametrize("is_inside", [False, True])
+def test_a_dislocation_leaves_the_circle_free_and_jumps_on_its_crack_only(is_inside):
     mouth, kolosov, gamma = np.exp(0.3j), 1.8, np.array(0.3 + 0.2j)
-    z0 = np.array(mouth + 0.7 * np.exp(0.8j))
+    source = np.array(0.7 * np.exp((0.8 + math.pi * is_inside) * 1j))
+
+    def field(z):
+        return dislocation(z - mouth, source, gamma, mouth, kolosov, is_inside)
+
     at = np.exp(1j * np.linspace(0.5, 6.0, 7))
-    potential, spread, _ = dislocation(at, z0, gamma, mouth, kolosov)
+    potential, spread, _ = field(at)
     assert np.abs(2.0 * potential.real - (at**2).conj() * spread.conj()).max() < 1e-14
-    middle, across = 0.5 * (mouth + z0), 1e-9j * (z0 - mouth)
-    one, other = (dislocation(np.array(middle + side * across), z0, gamma, mouth, kolosov)[2] for side in (1.0, -1.0))
+    middle, across = mouth + 0.5 * source, 1e-9j * source
+    one, other = (field(np.array(middle + side * across))[2] for side in (1.0, -1.0))
     assert abs(other - one) == pytest.approx(2.0 * math.pi * (kolosov + 1.0) * abs(gamma), rel=1e-6)
-    around = dislocation(3.0 * np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 2001)), z0, gamma, mouth, kolosov)[2]
+    around = field((0.95 if is_inside else 3.0) * np.exp(1j * np.linspace(0.4, 0.4 + 2.0 * math.pi, 2001)[5:-200]))[2]
     assert np.abs(np.diff(around)).max() < 0.02 * np.abs(around).max()
 
 
-def test_displacements_of_a_dislocation_have_its_stresses():
-    z0, gamma, kolosov, tau = np.array(1.4 * np.exp(0.4j)), np.array(0.2 - 0.5j), 2.1, np.exp(1.1j)
-    z = np.array([2.0 + 1.0j, -1.5j, -3.0 + 0.2j])
-    potential, spread, _ = dislocation(z, z0, gamma, np.exp(0.4j), kolosov)
-    before, after = (dislocation(z + h * tau, z0, gamma, np.exp(0.4j), kolosov)[2] for h in (-1e-5, 1e-5))
+@pytest.mark.parametrize("is_inside", [False, True])
+def test_displacements_of_a_dislocation_have_its_stresses(is_inside):
+    mouth, gamma, kolosov, tau = np.exp(0.4j), np.array(0.2 - 0.5j), 2.1, np.exp(1.1j)
+    source = np.array((-0.4 if is_inside else 0.4) * np.exp(0.4j))
+    z = np.array([0.4 + 0.2j, -0.3j, -0.6 + 0.2j] if is_inside else [2.0 + 1.0j, -1.5j, -3.0 + 0.2j])
+    potential, spread, _ = dislocation(z - mouth, source, gamma, mouth, kolosov, is_inside)
+    before, after = (
+        dislocation(z + h * tau - mouth, source, gamma, mouth, kolosov, is_inside)[2] for h in (-1e-5, 1e-5)
+    )
     traction = -1j * tau * (2.0 * potential.real + np.conj(spread * tau**2))
-    assert (after - before) / 2e-5 + 1j * traction == pytest.approx((kolosov + 1.0) * potential * tau, abs=1e-9)
+    assert (after - before) / 2e-5 + 1j * traction == pytest.approx((kolosov + 1.0) * potential * tau, rel=1e-7)
+
+
+def test_a_dislocation_inside_a_circle_is_regular_at_its_centre():
+    mouth, source, gamma = np.array(1.0 + 0j), np.array(-0.4), np.array(0.2 - 0.5j)
+    spread = dislocation(np.array([1e-3, 1e-3j]) - mouth, source, gamma, mouth, 2.0, True)[1]
+    assert abs(spread[0] - spread[1]) < 1e-2 * abs(spread[0])
 
 
 def test_rays_meet_the_nearest_edge():
@@ -98,7 +114,7 @@ def test_edges_of_all_cracks_suit_short_ones(part):
     edges = Edges([first, images.replace(rim, beside=tuple(hole))], images.FINENESS)
     assert images.is_fine(edges, [Part("", 1.0 + 0.0j, 1.0 + part + 0.0j)])
     assert not images.is_fine(edges, [Part("", 1.0 + 0.0j, 1.95 + 0.0j)])
-    assert images._count(edges, [Part("", 1.0 + 0.0j, 1.0 + part + 0.0j)]) == 24
+    assert images._count(edges.z[edges.part_of_node >= HOLE], [Part("", 1.0 + 0.0j, 1.0 + part + 0.0j)]) == 24
 
 
 @pytest.mark.gate
@@ -162,3 +178,84 @@ def test_a_wide_plate_is_the_infinite_plate():
         off.append(float(np.abs(found - infinite).sum(axis=(2, 3, 4)).max() / np.abs(infinite).sum()))
     assert off[0] < 5e-3
     assert off[1] / off[0] == pytest.approx(0.25, abs=0.05)
+
+
+STRIP = {
+    0.1: 1.1892,
+    0.2: 1.3673,
+    0.3: 1.6599,
+    0.4: 2.1114,
+    0.5: 2.8246,
+    0.6: 4.0332,
+    0.7: 6.3549,
+    0.8: 11.955,
+    0.9: 34.633,
+}
+"""K over s sqrt(pi a) of an edge crack through this part of a strip in tension: Kaya, Erdogan (1987)."""
+
+
+@pytest.mark.gate
+def test_an_edge_crack_of_a_strip_has_the_intensities_that_others_print():
+    strip = Lug(0.3, "stress", 1.0, rectangle((-50.0, 50.0), (-300.0, 400.0)), {"top": "both"})
+    other = OtherEdges(outlined(strip)).at(-50.0 + 150.0j, str)
+    assert other.mouth.edge == "left"
+    for part, expected in STRIP.items():
+        K = intensity_of(other, 0.0, 100.0 * part) / math.sqrt(100.0 * math.pi * part)
+        assert pytest.approx([expected, 0.0], rel=5e-5, abs=1e-6) == K
+    assert intensity_of(other, 0.0, 0.01)[0] / math.sqrt(0.01 * math.pi) == pytest.approx(1.1215222, rel=1e-6)
+
+
+@pytest.mark.gate
+def test_a_crack_at_a_further_hole_is_that_of_the_mirrored_plate():
+    """The plate mirrors its two holes."""
+    body = outlined(plate(y=(-2.5, 6.5), supports={"left": "both"}, holes=(Hole("far", 4j, 1.0),)))
+    near, far = OtherEdges(body), OtherEdges(body).at(5j, str)
+    for length in (0.1, 1.0, 1.5):
+        line = (CrackLine(-0.5 * math.pi, -0.3, length),)
+        expected = weights(line, near, needed_points(line, near))[0, :, 0, :, 0].sum(axis=1)
+        assert intensity_of(far, 0.3, length) == pytest.approx(expected * [1.0, -1.0], rel=1e-8)
+
+
+@pytest.mark.gate
+def test_a_crack_at_a_hole_of_a_wide_plate_is_that_of_the_infinite_plate():
+    body = outlined(plate((-100.0, 100.0), (-100.0, 100.0), holes=(Hole("far", 30.0 + 40.0j, 0.5),)))
+    far = OtherEdges(body).at(30.5 + 40.0j, str)
+    for length in (0.05, 0.5):
+        line = (CrackLine(0.0, 0.0, 2.0 * length),)
+        expected = weights(line, FreeRim(math.inf), 80)[0, :, 0, :, 0].sum(axis=1) * math.sqrt(0.5)
+        assert intensity_of(far, 0.0, length) == pytest.approx(expected, rel=1e-5, abs=1e-5)
+
+
+class FromFlat:
+    """The edges beyond a mouth with the closed field of a straight edge at it, whatever the edge; no interpolation."""
+
+    is_round = False
+
+    def __init__(self, other: OtherEdges, longest: float) -> None:
+        start, along = other.start(*other.line(0.0, 0.0))
+        self.mouth = other.mouth._replace(radius=1e8, normal=along, is_inside=False)
+        line = Part("", start + 0.01 * along, start + longest * along)
+        self.equations = images._equations(other.body, [(line, 2.0)], True)
+        self.start, self.along, self.radius = start, along, self.mouth.radius
+
+    def line(self, theta: float, angle: float) -> tuple[float, float]:
+        return 0.0, angle
+
+    def deepest(self, lines: tuple[CrackLine, ...]) -> float:
+        return 0.5
+
+    def influence(self, lines, s, t):
+        z, count = self.start + self.radius * np.concatenate([s[0], t[0]]) * self.along, s.size
+        each = np.full(z.size, self.along), np.full(z.size, self.start)
+        found = images.image(self.equations, z, *each, self.mouth)
+        return tuple(self.radius * one[:count, count:] for one in found)
+
+
+@pytest.mark.gate
+def test_the_closed_field_at_a_curved_edge_does_not_matter():
+    """At the nose, whose plate lies inside its circle. Its panels do not shrink to the mouth: errors of 1e-3."""
+    other = OtherEdges(outlined(lug_with_nose())).at(-2.2j, str)
+    assert (other.mouth.edge, other.mouth.is_inside) == ("nose", True)
+    for length in (0.5, 0.9):
+        expected = intensity_of(FromFlat(other, 0.9), 0.0, length)
+        assert intensity_of(other, 0.0, length) == pytest.approx(expected, rel=2e-3, abs=1e-6)

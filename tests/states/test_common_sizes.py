@@ -7,6 +7,7 @@ import pytest
 
 from fastpin import InputError, Points, Problem
 from fastpin.bodies import Ring
+from fastpin.cracks import Crack
 from fastpin.model.checks import is_above, is_between
 from fastpin.model.crack import MOST_OF_WALL, check_length
 from fastpin.states.yielding import circles
@@ -42,9 +43,9 @@ def test_limits_that_are_computed_can_be_reached() -> None:
         if outer < 1.05 * radius:
             continue  # too thin for a ring
         problem = Problem(PAIR, radius, 2e-5, 0.2, plate_body=Ring(outer))
-        check_length("last", problem, "plate", 0.0, MOST_OF_WALL * (outer - radius))
+        check_length("last", problem, Crack(0.0), MOST_OF_WALL * (outer - radius))
         with pytest.raises(InputError, match="last: must end within"):
-            check_length("last", problem, "plate", 0.0, (MOST_OF_WALL + 1e-6) * (outer - radius))
+            check_length("last", problem, Crack(0.0), (MOST_OF_WALL + 1e-6) * (outer - radius))
         held = replace(problem, plate_body=Ring(3.0 * outer), rotation="fixed", hub_radius=(1.0 + 1e-12) * radius)
         assert held.hub_radius == radius
         with pytest.raises(InputError, match="hub_radius"):
