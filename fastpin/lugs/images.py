@@ -209,9 +209,7 @@ def _kept(other: OtherEdges, rays: tuple[Ray, ...], part: float) -> tuple[np.nda
     longest = np.array([part * _known(other, *ray) for ray in rays])
     starts, along = (np.array(each) for each in zip(*(other.start(*ray) for ray in rays), strict=True))
     ends = [Part("", *pair) for pair in zip(starts.tolist(), (starts + longest * along).tolist(), strict=True)]
-    equations = _shared(other.body) if other.mouth is None else _from_edge(other, ends[0])
-    if other.mouth is None and not is_fine(equations.edges, ends):
-        equations = _equations(other.body, [(end, APART) for end in ends])
+    equations = _equations_beside(other, ends)
     nodes = equations.edges.z[equations.edges.part_of_node >= HOLE]
     if other.mouth is not None:
         nodes = equations.edges.z[~other.mouth.follows(equations.edges.z, equations.edges.extent)]
@@ -221,8 +219,12 @@ def _kept(other: OtherEdges, rays: tuple[Ray, ...], part: float) -> tuple[np.nda
     return image(equations, starts + s * along, along, starts, other.mouth)
 
 
-def _from_edge(other: OtherEdges, line: Part) -> PlateEquations:
-    """The equations for cracks from an edge beyond the hole. Its panels do not shrink towards the mouth."""
+def _equations_beside(other: OtherEdges, lines: Sequence[Part]) -> PlateEquations:
+    """The equations on edges whose panels are short beside lines of cracks. They do not shrink towards a mouth."""
+    if other.mouth is None:
+        shared = _shared(other.body)
+        return shared if is_fine(shared.edges, lines) else _equations(other.body, [(line, APART) for line in lines])
+    (line,) = lines
     away = min(float(distances(part, np.array([line.start]))[0]) for part in _other_parts(other))
     share = min(SHARE, 0.5 * away / line.length)
     inner = Part("", line.start + share * (line.end - line.start), line.end)

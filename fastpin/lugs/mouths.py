@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.lugs.outline import Lug, Part, distances
+from fastpin.lugs.outline import Lug, distances
 from fastpin.lugs.panels import LEAST_TURN, TOUCHING
 from fastpin.model.checks import as_toml
 
@@ -79,7 +79,7 @@ class Mouth(NamedTuple):
             raise InputError("place", f"must lie on an edge beyond the hole; the nearest one, {where}")
         if part.name in lug.supports:
             raise InputError("place", f"lies on {as_toml(part.name)}, which is held, and a crack begins at a free edge")
-        least, share = min(FROM_ENDS / part.length, 0.5), _share(part, place)
+        least, share = min(FROM_ENDS / part.length, 0.5), part.share(place)
         low, high = least, 1.0 - least
         for other in parts:
             for one, following, is_near in ((other, part, share < least), (part, other, share > 1.0 - least)):
@@ -89,24 +89,11 @@ class Mouth(NamedTuple):
                 if abs(turn) > LEAST_TURN:
                     x, y = length(one.end.real), length(one.end.imag)
                     raise InputError("place", f"lies at the corner x = {x}, y = {y}: a crack begins beside it")
-                if _is_one(one, following):
+                middle = following.at(np.array([0.5]))
+                if np.abs(one.nearest(middle)[0] - middle)[0] < TOUCHING:  # one line or circle goes on
                     low, high = 0.0, 1.0
         at = np.array([min(max(share, low), high)])
         inwards = 1j * complex(part.direction(at)[0])
         is_inside = part.circle is not None and part.circle[3] > 0.0
         radius = FLAT * lug.extent / lug.hole_radius if part.circle is None else part.circle[1]
         return cls(part.name, complex(part.at(at)[0]), -inwards if is_inside else inwards, radius, is_inside)
-
-
-def _is_one(part: Part, other: Part) -> bool:
-    """Whether two parts without a corner between them lie on one line or circle."""
-    middle = other.at(np.array([0.5]))
-    return bool(np.abs(part.nearest(middle)[0] - middle)[0] < TOUCHING)
-
-
-def _share(part: Part, place: complex) -> float:
-    """The share of the length of a part at which it is nearest to a place, beyond 0 and 1 beside the part."""
-    if part.circle is None:
-        return ((place - part.start) / (part.end - part.start)).real
-    centre, _, first, sweep = part.circle
-    return 0.5 + cmath.phase((place - centre) * cmath.exp(-1j * (first + 0.5 * sweep))) / sweep

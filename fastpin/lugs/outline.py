@@ -128,6 +128,13 @@ class Part:
         ray = (points - centre) / np.abs(points - centre)
         return centre + radius * ray, 1j * math.copysign(1.0, sweep) * ray
 
+    def share(self, place: complex) -> float:
+        """The share of the length at which the part, or its line or circle beyond, is nearest to a place, m."""
+        if self.circle is None:
+            return float(((place - self.start) / (self.end - self.start)).real)
+        centre, _, first, sweep = self.circle
+        return 0.5 + _angle((place - centre) * cmath.exp(-1j * (first + 0.5 * sweep))) / sweep
+
     def turn_round(self, z: np.ndarray) -> np.ndarray:
         """Angle by which the part goes round points z (m,), rad."""
         turn = np.angle((self.end - z) * np.conj(self.start - z))
