@@ -178,6 +178,11 @@ def test_what_does_not_go_with_a_laminate_is_refused(given: str, words: str) -> 
         parse_case(given)
 
 
+def test_a_laminate_may_wear() -> None:
+    case = parse_case(text(LAYUP, "[wear]\ncoefficient = 1e-15\ncycles = 10\n") + "repeat = 10\n")
+    assert case.wear is not None
+
+
 def test_the_example_names_all_keys() -> None:
     for key in ("layup", "ply", "E1", "compliance", "axis"):
         assert f"# {key} = " in EXAMPLE
