@@ -35,32 +35,17 @@ log = logging.getLogger(__name__)
 COARSE_NODES = 121
 """Nodes of a coarse run."""
 
-GAP_NODES = 241
-"""Nodes of a coarse run with an initial gap, on the whole circle."""
-
 QUICK_NODES = 61
 """Nodes of a quick coarse run. Where it is not :func:`sure <_quick_arc>` of its arc, finer ones follow."""
 
-QUICK_MARGIN = 2
-"""Nodes of a quick coarse run that the arc has beyond those in contact; its edges lie within one node."""
-
-LEAST_HALF = 1e-6
-"""Least half-angle of the estimated contact, rad. Angles hold 16 digits, and nodes within must be distinct."""
-
 WHOLE = 5.6
 """Length of an arc, rad. A wider arc becomes the whole circle."""
-
-MOST_CORNERS = 200
-"""Corners that a coarse run follows. Of a longer history it follows the extreme corners only."""
 
 LEAST_ACROSS = (10, 20)
 """Nodes across the narrowest contact of a graded grid, at least; more where a contact gets lost on the first grid."""
 
 MOST_GRADED = 20_000
 """Nodes of a graded grid, at most, unless the user asks for more."""
-
-DIRECTIONS = 16
-"""Directions in the plane of two loads. The outermost corner in each direction is an extreme corner."""
 
 
 class CoarseRun(Run):
@@ -167,7 +152,7 @@ def _touched_arc(
     for _ in range(12):
         if arc is not None and arc[1] - arc[0] >= WHOLE:
             arc = None
-        circle = GAP_NODES if problem.gap else COARSE_NODES
+        circle = 241 if problem.gap else COARSE_NODES
         grid = Grid.circle(circle) if arc is None else Grid.arc(*arc, COARSE_NODES)
         margin = 4
         touched, error = _coarse_run(latest_system(problem, grid, force), values, progress)
@@ -205,7 +190,8 @@ def _quick_arc(
     touched, error = _coarse_run(latest_system(problem, grid, force), values, progress)
     if error is not None or touched.size == 0:
         return None
-    first, last = max(touched[0] - QUICK_MARGIN, 0), min(touched[-1] + QUICK_MARGIN, QUICK_NODES - 1)
+    margin = 2  # the edges of the contact lie within one node
+    first, last = max(touched[0] - margin, 0), min(touched[-1] + margin, QUICK_NODES - 1)
     return (float(grid.theta[first]), float(grid.theta[last])) if last - first > 0.4 * QUICK_NODES else None
 
 
@@ -270,7 +256,8 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
     climbed = angles + climb_angle(pin[loaded], values[loaded, M] / problem.hole_radius)
     angles = np.concatenate([angles, climbed])
     parameter = problem.load_parameter(float(pin.max()))
-    half = 1.6 if parameter <= 0.0 else min(1.6, max(LEAST_HALF, 1.3 / math.sqrt(math.pi * parameter)))
+    # The nodes within must be distinct, and angles hold 16 digits.
+    half = 1.6 if parameter <= 0.0 else min(1.6, max(1e-6, 1.3 / math.sqrt(math.pi * parameter)))
     return float(angles.min()) - 1.3 * half, float(angles.max()) + 1.3 * half
 
 
@@ -288,12 +275,12 @@ def _without_repetition(values: np.ndarray) -> np.ndarray:
 
 def _outline(problem: Problem, values: np.ndarray) -> np.ndarray:
     """The outermost corners of a long history, in their order. All loads of the history lie between them."""
-    if len(values) <= MOST_CORNERS:
+    if len(values) <= 200:
         return values
     largest = np.abs(values).max(axis=0)
     scaled = values[:, largest > 0.0] / largest[largest > 0.0]
     chosen = {0}
-    for turn in np.linspace(0.0, 2.0 * math.pi, DIRECTIONS, endpoint=False):
+    for turn in np.linspace(0.0, 2.0 * math.pi, 16, endpoint=False):  # in the plane of two loads
         for first, second in itertools.combinations_with_replacement(range(scaled.shape[1]), 2):
             chosen.add(int(np.argmax(math.cos(turn) * scaled[:, first] + math.sin(turn) * scaled[:, second])))
     force = pushes(problem, values)

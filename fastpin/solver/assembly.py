@@ -147,10 +147,6 @@ def _corrected(system: System, start: Configuration, found: Configuration) -> Co
     return accept_solution(start, whole, found.load)
 
 
-COARSER = 0.8
-"""Nodes in parts of those on which no first contact was found, with which it is looked for once more."""
-
-
 def one_step(
     system: System, resting: Configuration, load: np.ndarray, everywhere: bool = False
 ) -> Configuration | None:
@@ -179,7 +175,7 @@ def _refined(system: System, resting: Configuration, load: np.ndarray) -> Config
 
     A neat pin that turns freely may slip and stick in many zones. From rest they are found on few nodes only.
     """
-    count, theta = int(COARSER * system.grid.size), system.grid.theta
+    count, theta = int(0.8 * system.grid.size), system.grid.theta
     if count < LEAST_NODES or not system.grid.closed:
         return None
     coarse = System.build(system.problem, Grid.circle(count, float(theta[0])), system.scales.force)

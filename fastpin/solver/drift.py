@@ -41,17 +41,11 @@ from fastpin.solver.settling import settle
 from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.unknowns import DenseUnknowns
 
-MOST_AHEAD = 0.1
-"""Longest stretch of a path between two solutions, in parts of the path."""
-
 LIMIT = 1e-13
 """Part of the largest pressure, displacement or rate. A function below it is at its limit."""
 
 BROKEN = 1e-10
 """Part of the largest pressure, displacement or rate. A function below minus this part is no rounding."""
-
-CLOSING = 0.1
-"""Part of the largest displacement for gaps. An overlap that is left when a node closes becomes a pressure."""
 
 FALLING = 1e-10
 """Part of the largest rate. A function at its limit that falls faster ends its status."""
@@ -61,15 +55,6 @@ SAME_TIME = 1e-14
 
 MOST_BEND = 1e-7
 """Largest difference of a solution from the cubic through its neighbours, relative. Beyond, the stretch is halved."""
-
-LEAST_STRETCH = 1e-6
-"""A shorter stretch is not halved."""
-
-SAMPLES = np.linspace(0.0, 1.0, 33)[1:-1, None, None]
-"""Places in a stretch at which the cubic of each function is looked at."""
-
-MOST_FLIPS = 3
-"""Times that the statuses at an event change one by one, before Lemke's method finds them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +122,8 @@ class Moment:
         """Sizes of the functions and of their rates, shape (4, n)."""
         (traction, length), (traction_rate, length_rate), (_, bend) = self.scales
         is_open, one = self.status == OPEN, np.ones(self.status.size)
-        of_values = np.array([np.where(is_open, CLOSING * length, traction), *[traction * one] * 2, length_rate * one])
+        gaps = 0.1 * length  # an overlap that is left when a node closes becomes a pressure
+        of_values = np.array([np.where(is_open, gaps, traction), *[traction * one] * 2, length_rate * one])
         traction_rate = max(traction_rate, float(np.abs(self._growth).max()) * traction)
         of_rates = np.array([np.where(is_open, length_rate, traction_rate), *[traction_rate * one] * 2, bend * one])
         return of_values, of_rates
@@ -287,8 +273,8 @@ class DriftPath:
 
         The stretch has length 0 if the statuses hold no longer than now.
         """
-        end, broken = self._first_event(here, None, min(here.time + MOST_AHEAD, stop))
-        while end.time - here.time > LEAST_STRETCH:
+        end, broken = self._first_event(here, None, min(here.time + 0.1, stop))
+        while end.time - here.time > 1e-6:  # a shorter stretch is not halved
             middle = self._moment(0.5 * (here.time + end.time))
             if not middle.broken.any():
                 bend = _bend(here, middle, end)
@@ -365,7 +351,7 @@ class DriftPath:
         if not ending.any():
             return moment
         system, found = moment.system, moment
-        for _ in range(MOST_FLIPS):
+        for _ in range(3):  # one by one; then Lemke's method finds them
             status = _flipped(found, ending)
             try:
                 found = self._moment(moment.time, status)
@@ -441,7 +427,7 @@ def _dip(here: Moment, end: Moment, margin: float) -> float | None:
     turns &= np.isfinite(begin[0]) & np.isfinite(stop[0])
     if not turns.any():
         return None
-    t, begin, stop = SAMPLES[:, 0], begin[:, turns], stop[:, turns]
+    t, begin, stop = np.linspace(0.0, 1.0, 33)[1:-1, None], begin[:, turns], stop[:, turns]
     cubic = (1.0 + 2.0 * t) * (1.0 - t) ** 2 * begin[0] + t * (1.0 - t) ** 2 * begin[1]
     cubic += t * t * (3.0 - 2.0 * t) * stop[0] + t * t * (t - 1.0) * stop[1]
     place = int(np.argmin(cubic.min(axis=1)))

@@ -22,9 +22,6 @@ from fastpin.solver.step import is_pushed
 FINE = 1440
 """Angles at which the narrowest gap is looked for before it is refined."""
 
-REFINEMENTS = 4
-"""Newton's steps for the place of the narrowest gap."""
-
 
 def can_float(system: System, load: np.ndarray) -> bool:
     """Whether the pin can be without contact under a load: nothing pushes it, and it has room where it is."""
@@ -161,7 +158,7 @@ def _narrowest(system: System, load: np.ndarray, position: np.ndarray) -> tuple[
         coarse = np.r_[coarse, system.problem.gap_angles]
     values = gap(coarse)[0]
     first = angle = float(coarse[np.argmin(values)])
-    for _ in range(REFINEMENTS):
+    for _ in range(4):  # Newton's steps
         _, slope, curvature = gap(angle)
         if not curvature > 0.0:
             break

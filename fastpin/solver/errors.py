@@ -8,9 +8,6 @@ from fastpin.solver.result import Result
 CUT_OFF = "the contact reaches an end of the arc; give a wider one, or none"
 """Message of an :class:`ArcError`."""
 
-BEYOND = "the pin touches the hole beyond the arc; give a wider one, or none"
-"""Message of an :class:`ArcError`."""
-
 NARROW = "at the first load the contact is narrower than the nodes can resolve; use more nodes or leave that load out"
 """Message where the contact at the first load is narrower than the nodes."""
 

@@ -18,6 +18,7 @@ from fastpin.runtime.extensions import optimize
 from fastpin.solver.assembly import one_step, shearless_step
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
+    ROUNDED,
     SLIGHT,
     Configuration,
     accept_solution,
@@ -40,14 +41,8 @@ from fastpin.solver.step import is_pushed, presses
 from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.window import SecondPlaceError, Window
 
-FIRST_NODES = (2, 4)
-"""Least and largest number of closed nodes that the first contact aims at, in each of its patches."""
-
 FIRST_BESIDE = 2
 """Nodes on either side of the nearest node. The iteration for the first contact begins with all these closed."""
-
-OUTSIDE = 721
-"""Points of the hole outside an arc at which it may grip a pin without force."""
 
 GROWN_NODES = 19
 """Nodes of the young contact from which the slip of the first nodes is found."""
@@ -55,23 +50,8 @@ GROWN_NODES = 19
 BESIDE_END = 3
 """Nodes by which a young contact stays smaller than its distance from the end of an arc allows, twice the distance."""
 
-GROWN_FIT = np.arange(4, 7)
-"""Distances, in nodes from the first node, of the nodes whose slip tells the slip of the nodes between."""
-
 CONFORMING_PART = 1e-3
-"""Part of a step at which the first contact of such a pin is tried."""
-
-STEADY = 0.1
-"""Largest relative change of the hole's curvature against the pin's while the first nodes close."""
-
-MOST_WINDOWS = 10
-"""Windows on which a first contact is tried: the pin may also touch outside of one."""
-
-MOST_TRIALS = 30
-"""Loads at which the first contacts of pin and bush together are tried."""
-
-LEAST_PART = 1e-12
-"""Smallest part of a step at which a first contact is tried."""
+"""Part of a step at which the first contact of a pin is tried on which the hole closes all round."""
 
 
 class Way(NamedTuple):
@@ -287,7 +267,7 @@ def _both_at_once(
     if all(_is_self_similar(alone, resting, way._replace(begins=0.0)) for alone in joint.alone):
         part = 1.0
     resting.status[joint.interfaces[SEAT].nodes] = seat_status
-    for _ in range(MOST_TRIALS):
+    for _ in range(30):
         load = before + part * (after - before)
         step = one_step(joint, resting, load)
         if step is not None and worst_residual(joint, step) <= MAX_RESIDUAL:
@@ -306,7 +286,7 @@ def _first_contact_from(system: System, resting: Configuration, way: Way, steady
     if not isinstance(system, LargeSystem):
         return _first_patch(system, resting, way, most_part)
     nodes = resting.closed
-    for _ in range(MOST_WINDOWS):
+    for _ in range(10):  # the pin may also touch outside of a window
         window = Window(system, nodes)
         try:
             patch, part = _first_patch(window.system, resting.part(window.nodes), way, most_part)
@@ -337,7 +317,7 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
     """
     theta = system.grid.theta
     if not system.grid.closed:  # the rest of the hole
-        beyond = np.linspace(theta[-1], theta[0] + 2.0 * math.pi, OUTSIDE)[1:-1]
+        beyond = np.linspace(theta[-1], theta[0] + 2.0 * math.pi, 721)[1:-1]
         theta = np.r_[theta, beyond]
     first, last = hole_gap(system, before, theta)[0], hole_gap(system, after, theta)[0]
     size = max(float(np.abs(first).max()), float(np.abs(last).max()), 1e-300)
@@ -374,7 +354,7 @@ def _first_patch(system: System, resting: Configuration, way: Way, most_part: fl
     """
     begins, before, after, has_slip = way
     patches = len(runs(system.grid, resting.closed))
-    least, most = (patches * count for count in FIRST_NODES)
+    least, most = 2 * patches, 4 * patches  # closed nodes that the first contact aims at
     wanted = 0.5 * (least + most)
     self_similar = _is_self_similar(system, resting, way)
     left = (1.0 - begins) * (after - before)
@@ -383,7 +363,7 @@ def _first_patch(system: System, resting: Configuration, way: Way, most_part: fl
     most_part = 1.0 if self_similar or conforming else most_part
     driven, best, wide = system.drive.has_displacements, None, min(part, most_part)
     by_hertz = wide < most_part and not (conforming or driven or system.problem.gap or after[list(REMOTE)].any())
-    part = max(0.36 * wide, LEAST_PART) if by_hertz else wide  # three nodes in place of five: the width squared
+    part = max(0.36 * wide, ROUNDED) if by_hertz else wide  # three nodes in place of five: the width squared
     low, high = 0.0, math.inf  # parts with too few nodes, and with too many
     for _ in range(60):
         fraction = begins + part * (1.0 - begins)
@@ -411,7 +391,7 @@ def _first_patch(system: System, resting: Configuration, way: Way, most_part: fl
         part *= min(max((wanted / max(count, 1)) ** 2, 0.05), 10.0)
         if not low < part < high:  # in a worn hole many nodes close at once
             part = math.sqrt(low * high)
-        part = min(max(part, LEAST_PART), most_part)
+        part = min(max(part, ROUNDED), most_part)
     if best is None or (driven and best[0] == 0):
         raise ResolutionError(NARROW)
     count, found, fraction = best
@@ -459,7 +439,7 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
 
     A young contact grows in proportion: nodes at a distance x from the first node stick with a slip (c_0 + c_1 x) x^2,
     on either side. The path is followed on trial, in the direction of the load, until the contact has
-    :data:`GROWN_NODES` nodes. The nodes :data:`GROWN_FIT` then give the two numbers of their side.
+    :data:`GROWN_NODES` nodes. Those 4 to 6 nodes from the first one then give the two numbers of their side.
 
     `begin` is the load at which the contact begins. Returns None if those nodes do not all stick.
     """
@@ -520,7 +500,7 @@ def _set_slip_beside(system: System, patch: Configuration, grown: Configuration,
     # Remote stress and prescribed displacements have moved the pin along the hole before.
     rest = patch.rest_slip - patch.rest_slip[first]
     for sense in (-1, 1):
-        fitted, inner = first + sense * GROWN_FIT, first + sense * np.arange(1, GROWN_FIT[0])
+        fitted, inner = first + sense * np.arange(4, 7), first + sense * np.arange(1, 4)
         if system.grid.closed:
             fitted, inner = fitted % n, inner % n
         elif fitted.min() < 0 or fitted.max() >= n:
@@ -553,14 +533,14 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     if force == 0.0:
         shrinking = float(gap - hole_gap(system, resting.load + change, theta)[0])
         shrinking += float(change[UX] * math.cos(theta) + change[UY] * math.sin(theta))
-        part = 0.5 * bent * half**2 / shrinking if shrinking > 0.0 else LEAST_PART
+        part = 0.5 * bent * half**2 / shrinking if shrinking > 0.0 else ROUNDED
     else:
         part = math.pi * bent * half**2 / force
-    return min(max(part, LEAST_PART), 1.0)
+    return min(max(part, ROUNDED), 1.0)
 
 
 def _steady_part(system: System, resting: Configuration, change: np.ndarray) -> float:
-    """The part of a change of the load during which the hole keeps its shape, by :data:`STEADY` of its bend."""
+    """The part of a change of the load that changes the hole's curvature against the pin's by a tenth at most."""
     if system.bodies is None and not change[SHAPING].any():
         return 1.0
     theta = system.grid.theta
@@ -568,7 +548,8 @@ def _steady_part(system: System, resting: Configuration, change: np.ndarray) -> 
     later, _, bent = hole_gap(system, resting.load + change, theta)
     here = max(float((gap + curvature)[_nearest(system, resting)]), 0.0)
     changed = float(np.abs(later + bent - gap - curvature).max())
-    return 1.0 if changed <= STEADY * here else max(STEADY * here / changed, LEAST_PART)
+    most = 0.1 * here
+    return 1.0 if changed <= most else max(most / changed, ROUNDED)
 
 
 def _nearest(system: System, resting: Configuration) -> int:

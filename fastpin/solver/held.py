@@ -32,12 +32,6 @@ FEW_NODES = 512
 MOST_NUMBERS = 4_000_000
 """Numbers in the tables of all held contacts of a system that are kept, at most: 32 MB."""
 
-LEAST_NEIGHBOURS = 192
-"""Smallest number of neighbouring nodes for the inverse in a laminate. With fewer nodes a factorisation is as fast."""
-
-MOST_FACTORISED = 400
-"""Most rows of a table by a factorisation. With more rows, columns on demand take less time."""
-
 MOST_UPDATES = 240
 """Updates of a tableau beside those of the slipping nodes, at most. Then the closed nodes are held anew.
 
@@ -110,7 +104,8 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     table = HeldTable(np.empty((size, size), order="F"), stack, order)
     is_sound, in_laminate = False, system.bodies is not None and bool(system.bodies.anisotropy)
     suits = in_laminate or system.motions == 3  # the kernel has the motions of one pin
-    if suits and have_toeplitz_matrix(system, nodes, LEAST_NEIGHBOURS if in_laminate else 1):
+    least = 192 if in_laminate else 1  # with fewer nodes a factorisation is as fast
+    if suits and have_toeplitz_matrix(system, nodes, least):
         if in_laminate:
             is_sound = _fill_in_laminate(system, closed, table)
         else:
@@ -120,7 +115,7 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
             is_sound = condition < MOST_CONDITION and error < MOST_RESIDUAL
     if is_sound:
         return table
-    if 2 * nodes.size > MOST_FACTORISED:
+    if 2 * nodes.size > 400:  # columns on demand take less time
         return None
     unknowns = DenseUnknowns(system, np.where(closed, STICK, OPEN).astype(np.int8))
     if unknowns.singular:

@@ -24,15 +24,6 @@ from fastpin.solver.configuration import (
     solve_statuses,
 )
 
-MOST_ITERATIONS = 200
-"""Iterations of one increment, at most."""
-
-FEW_ITERATIONS = 12
-"""Iterations of an increment that is not patient, at most."""
-
-TOLERANCE = 1e-11
-"""Part of the largest pressure or displacement below which an overstepped limit changes no status."""
-
 
 def implicit_step(system: System, start: Configuration, load: np.ndarray, patient: bool = True) -> Configuration | None:
     """Go from the configuration `start` to `load` in one implicit increment.
@@ -56,7 +47,7 @@ def implicit_step(system: System, start: Configuration, load: np.ndarray, patien
     attempts = [start.status, np.where(start.closed, resting_status(system), OPEN).astype(np.int8)]
     for one_at_a_time in (False, True) if patient else (False,):
         for first in attempts:
-            found = _iterate(system, start, load, first, one_at_a_time, MOST_ITERATIONS if patient else FEW_ITERATIONS)
+            found = _iterate(system, start, load, first, one_at_a_time, 200 if patient else 12)
             if found is not None:
                 return found
     return None
@@ -91,8 +82,8 @@ def _iterate(
 
 def _wanted_status(system: System, start: Configuration, solution: ContactValues) -> np.ndarray:
     """The statuses for the next iteration: the present statuses, changed where the solution breaks a condition."""
-    wanted = np.empty_like(solution.status)
-    conditions.wanted_status(system.friction, solution, start.slip, start.rest_gap, TOLERANCE, wanted)
+    wanted, tolerance = np.empty_like(solution.status), 1e-11  # parts of the largest pressure or displacement
+    conditions.wanted_status(system.friction, solution, start.slip, start.rest_gap, tolerance, wanted)
     for nodes in system.turning:
         if not (wanted[nodes] == STICK).any():
             slid = solution.slip[nodes] - start.slip[nodes]

@@ -20,9 +20,6 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.rest import release
 from fastpin.solver.step import Piece, Position, StepReport
 
-MOST_HALVINGS = 12
-"""Times that an increment is halved, at most, while its iteration cycles."""
-
 
 class IncrementStepper:
     """The increment solver as a stepper: it follows a step in implicit increments, first order in their size.
@@ -53,14 +50,14 @@ class IncrementStepper:
         Raises
         ------
         ConvergenceError
-            If no state that meets the contact conditions was found in an increment halved :data:`MOST_HALVINGS` times.
+            If no state that meets the contact conditions was found in an increment halved 12 times.
         ArcError
             If the contact reaches an end of the arc.
         """
         load, before, begin = piece.load_at(stop), position.now.load, position.reached
         for part in self._parts(position, stop):
             target = load if part == 1.0 else before + part * (load - before)
-            self._increment(position, position.now, target, MOST_HALVINGS)
+            self._increment(position, position.now, target, halvings=12)
             if self._may_touch_again(position):
                 done = np.linalg.norm(position.now.load - before) / np.linalg.norm(load - before)
                 position.reached = begin + float(done) * (stop - begin)

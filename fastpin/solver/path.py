@@ -32,26 +32,14 @@ MOST_REBUILDS = 400
 MOST_EVENTS = 200
 """Events in one piece of a step, at most, for each node."""
 
-MOST_RESETTLINGS = 20
-"""Settlings by Lemke's method in one piece of a step, at most, for each node."""
-
 MOST_DRIFT = 1e-10
 """Largest relative error of gap and slip, checked after every chunk of updates. Above it the tableau is rebuilt."""
 
 SEVERE_DRIFT = 1e-6
 """Relative error of gap and slip with which events may have been missed. The step goes back to the last check."""
 
-CAREFUL_ROOM = (24, 7)
-"""Updates of the tableau before it is rebuilt, after a first and a second severe drift."""
-
 MOST_ERROR = 1e-12
 """Relative error that corrections may leave. Above it a factorisation computes the state anew."""
-
-MOST_SETTLINGS = 3
-"""Times that statuses are settled anew at a stop, where the corrected state oversteps their limits."""
-
-SAMPLED_NODES = 16
-"""Nodes at which gap and slip are compared with the matrices after every chunk."""
 
 
 class StepLostError(Exception):
@@ -113,7 +101,7 @@ class PathStep:
         self._sample: slice | np.ndarray = slice(None)
         self._sampled: Operator | np.ndarray = system.operator
         if n > FEW_NODES:
-            nodes = np.unique(np.linspace(0, n - 1, SAMPLED_NODES).astype(int))
+            nodes = np.unique(np.linspace(0, n - 1, 16).astype(int))  # compared with the matrices after every chunk
             rows = np.r_[nodes, n + nodes]
             self._sample, self._sampled = rows, system.operator.entries(rows=rows)
         self.rebuilds = 0
@@ -197,7 +185,7 @@ class PathStep:
                 if (correction := self._correct()) is None:
                     checked = 0
                     continue
-                last = settlings == MOST_SETTLINGS
+                last = settlings == 3
                 if not exceeds_bounds(correction) or (last and _is_rounding(correction)):
                     return correction.settled
                 if last:
@@ -265,7 +253,7 @@ class PathStep:
         """Find the statuses after an event by Lemke's method, where their exchange has not settled."""
         status = settle(self.system, self.now, self.rate)
         self.resettled += 1
-        if status is None or self.resettled > MOST_RESETTLINGS * status.size:
+        if status is None or self.resettled > 20 * status.size:
             raise StepLostError(exchange.CYCLING, self.fraction)
         if np.any(status[self.system.ends] != OPEN):
             raise StepLostError(exchange.ARC_END, self.fraction)
@@ -319,7 +307,7 @@ class PathStep:
 
         Returns whether the tableau can be rebuilt more often than before.
         """
-        smaller = [room for room in CAREFUL_ROOM if self._room is None or room < self._room]
+        smaller = [room for room in (24, 7) if self._room is None or room < self._room]  # updates before a rebuild
         if not smaller:
             return False
         self._room = smaller[0]

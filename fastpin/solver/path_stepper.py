@@ -32,25 +32,6 @@ from fastpin.solver.tableau import TableauMemory
 FEW_CLOSED = 8
 """A contact of at most this many nodes, lost during a complete unloading, has just opened."""
 
-NEGLIGIBLE = 1e-3
-"""Part of a step's force. Below it a contact narrower than the grid is released, and a first contact follows."""
-
-MOST_RELEASES = 20
-"""Such releases in one piece of a step, at most."""
-
-FIRST_JUMP, LARGEST_JUMP = 1e-6, 2e-2
-"""Part of a piece at which a state beyond the first snap is looked for; largest part of a step for later snaps."""
-
-JUMP_GROWTH = 1.3
-"""Growth of this part from snap to snap, so that a pin that snaps all the way comes to the end."""
-
-LONGER_JUMPS = (1.0, 1e2, 1e4)
-"""Factors of this part that are tried one after the other."""
-
-ALMOST_UNLOADED = 1.0 - 1e-8
-"""Beyond this part of a complete unloading everything falls to zero together. The order of events is rounding there."""
-
-
 MOST_SYSTEMS = 8
 """Systems with another friction that are kept, with their tables. A history returns to the same few."""
 
@@ -156,8 +137,9 @@ class PathStepper:
 
     def _jump(self, position: Position, piece: Piece, stop: float) -> bool:
         """Take the pin over a snap to a state at a finite distance. Returns whether one was found."""
-        jump = FIRST_JUMP * JUMP_GROWTH**self._jumps * (piece.end - piece.begin)
-        ends = [min(position.reached + min(factor * jump, LARGEST_JUMP), stop) for factor in LONGER_JUMPS]
+        # The parts grow from snap to snap, so that a pin that snaps all the way comes to the end.
+        jump = 1e-6 * 1.3**self._jumps * (piece.end - piece.begin)
+        ends = [min(position.reached + min(factor * jump, 2e-2), stop) for factor in (1.0, 1e2, 1e4)]
         for reached in dict.fromkeys(ends):
             load = piece.load_at(reached)
             found = find_state_beyond(self._system.under(load), position.now, load)
@@ -175,12 +157,12 @@ class PathStepper:
         if lost.code in (exchange.ARC_END, exchange.UNBONDED):
             return False
         unloading = can_float(self._system, piece.after)
-        if unloading and lost.fraction > ALMOST_UNLOADED:
+        if unloading and lost.fraction > 1.0 - 1e-8:  # all falls to zero together: the order of events is rounding
             return True
         if (
             now.load[M] != 0.0
             or int(now.closed[self._system.interfaces[0].nodes].sum()) > FEW_CLOSED
-            or self._releases == MOST_RELEASES
+            or self._releases == 20
         ):
             return False
         self._releases += 1
@@ -188,7 +170,7 @@ class PathStepper:
         if unloading or (self._strict and not driven):
             return unloading
         largest = max(force_of(piece.before), force_of(piece.after), 1.0 if driven else 0.0)
-        small = force_on_pin(self._system, now) <= NEGLIGIBLE * largest
+        small = force_on_pin(self._system, now) <= 1e-3 * largest  # a first contact follows
         self._statistics["released"] += small and not driven
         return small
 

@@ -23,9 +23,6 @@ from fastpin.solver.configuration import Configuration
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.states.cycles import Cycle
 
-MOST_LOGGED = 1024
-"""Latest corners in the log. The log is longer if the longest cycle has more corners."""
-
 
 @dataclass(eq=False)
 class CycleEnd:
@@ -116,7 +113,7 @@ class CornerLog:
     def __init__(self, history: LoadHistory, marks: dict[CycleKey, CycleEnd]) -> None:
         self.history = history
         self.marks = copied_ends(marks)
-        self.log: deque[CornerEntry] = deque(maxlen=max(MOST_LOGGED, history.longest_cycle))
+        self.log: deque[CornerEntry] = deque(maxlen=max(1024, history.longest_cycle))
 
     @property
     def latest(self) -> CornerEntry:

@@ -21,12 +21,6 @@ from fastpin.solver.path import PathStep, StepLostError
 SHAPING = [SXX, SYY, SXY, *THERMAL]
 """Loads that change the shape of the hole."""
 
-LEAST_BEND = 1e-4
-"""Angle beside a place, rad, at least, over which a gap is bent: rounding is 1e-8 of the gap there."""
-
-SHORTEST_WAY = 1e-9
-"""Part of a step within which the bore of a bush grips a floating pin."""
-
 REFINEMENTS = 8
 """Newton's steps for a pin that rests on two places."""
 
@@ -112,8 +106,8 @@ def follow_floating(joint: JointSystem, now: Configuration, load: np.ndarray) ->
     try:
         found = at(1.0)
         if _room(joint, found) < 0.0:
-            grips = optimize.brentq(lambda part: _room(joint, at(part)), 0.0, 1.0, xtol=SHORTEST_WAY)
-            return at(max(float(grips) - SHORTEST_WAY, 0.0))
+            grips = optimize.brentq(lambda part: _room(joint, at(part)), 0.0, 1.0, xtol=SLIGHT)
+            return at(max(float(grips) - SLIGHT, 0.0))
     except StepLostError:
         raise NoEquilibriumError("nothing holds the bush in its seat") from None
     found.load = load.copy()
@@ -261,7 +255,7 @@ def bend(system: System, load: np.ndarray, angle: float, half: float) -> float:
     gap, _, curvature = hole_gap(system, load, angle)
     if not system.problem.gap:
         return float(gap + curvature)
-    width = max(half, LEAST_BEND)
+    width = max(half, 1e-4)  # rounding is 1e-8 of the gap there
     beside = hole_gap(system, load, angle + width * np.array([-1.0, 1.0]))[0]
     return float(beside.sum() - 2.0 * math.cos(width) * gap) / (4.0 * math.sin(0.5 * width) ** 2)
 

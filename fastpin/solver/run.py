@@ -33,7 +33,7 @@ from fastpin.solver.configuration import (
     thermal_energy,
     unbalanced,
 )
-from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, SolveError
+from fastpin.solver.errors import ArcError, ConvergenceError, SolveError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.repeats import CornerEntry, CornerLog, CycleEnd, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import follow_floating, release
@@ -61,12 +61,6 @@ RunProgress = Callable[[float, int], None]
 
 COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated", "resettled", "jumps", "released")
 """Counts in the statistics of a run."""
-
-LAST_PART = 1e-7
-"""Last part of a piece in which the contact of a nearly neat fit vanishes. Its tractions are rounding there."""
-
-MOST_FIRST = 12
-"""First contacts that are tried while the friction changes, at most. The load of the second is that of the third."""
 
 
 class Recorder(Protocol):
@@ -286,7 +280,7 @@ class Run:
             if not inside and self.recorder is not None:
                 check_resolution(self.system, position.now)
             if self._outside is not None and self._outside.is_closed(self.system, position.now):
-                raise ArcError(BEYOND)
+                raise ArcError("the pin touches the hole beyond the arc; give a wider one, or none")
             known, now = None, position.now
             if not self.wears and not self.is_coarse:
                 now = position.now = marked(self.system, self.last_corner, now)
@@ -317,7 +311,8 @@ class Run:
             load = piece.load_at(stop)
             check_turning(self.system, load)
             vanishes = self.system.is_nearly_neat and not presses(load)
-            until = max(stop - LAST_PART * (piece.end - piece.begin), position.reached) if vanishes else stop
+            # In the last part of a piece the contact of a nearly neat fit vanishes: its tractions are rounding there.
+            until = max(stop - 1e-7 * (piece.end - piece.begin), position.reached) if vanishes else stop
             aim = piece.load_at(until) if vanishes else load
             while (position.now.load != aim).any():
                 if position.now.closed[pin].any():
@@ -356,7 +351,7 @@ class Run:
     def _first_contact(self, before: np.ndarray, load: np.ndarray) -> tuple[Configuration, float]:
         """Find the first contact, see :func:`first_contact`. Its friction is that of the load at which it is found."""
         friction_at = before
-        for _ in range(MOST_FIRST):
+        for _ in range(12):  # fixed-point iterations, at most
             system = self.system.under(friction_at)
             found = first_contact(system, self.now, before, load, self.strict, not self.is_coarse)
             if found[0].load[FRICTION_CHANGE] == friction_at[FRICTION_CHANGE]:

@@ -27,9 +27,6 @@ from fastpin.solver.unknowns import DenseUnknowns
 MOST_VARIABLES = 1200
 """Variables of a complementarity problem, at most. Time and memory of a pivot grow with their square."""
 
-MORE_NODES = 20
-"""Nodes by which a contact may grow in one finite step, beyond twice its nodes."""
-
 
 def lemke(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray | None:
     """Solve w = vector + matrix z, w >= 0, z >= 0, w z = 0 by Lemke's method.
@@ -149,7 +146,7 @@ class FiniteStep:
     now : Configuration
         The configuration at the start. It is not changed.
     everywhere : bool
-        Whether all nodes may close. If not, the contact may grow to twice its nodes and :data:`MORE_NODES` more.
+        Whether all nodes may close. If not, the contact may grow to twice its nodes and 20 more.
     """
 
     def __init__(self, system: System, now: Configuration, everywhere: bool = False) -> None:
@@ -161,7 +158,7 @@ class FiniteStep:
         away = np.flatnonzero(~now.closed)
         away = away[~system.ends[away]]
         room = MOST_VARIABLES // (3 if system.has_friction else 1) - self._closed.size
-        room = min(max(room, 0), system.grid.size if everywhere else self._closed.size + MORE_NODES)
+        room = min(max(room, 0), system.grid.size if everywhere else self._closed.size + 20)
         self._away = np.sort(away[np.argsort(now.gap[away], kind="stable")[:room]])
         if not self._unknowns.singular:
             self._matrix = self._complementarity_matrix()

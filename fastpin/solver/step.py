@@ -30,9 +30,6 @@ SCALING = [P, Q, M, *REMOTE, UX, UY, *THERMAL]
 LEAST_CLOSED = 3
 """Nodes of a contact at a corner, at least. With fewer the pressure is anything."""
 
-NEXT_TO_NOTHING = 1e-6
-"""Force of a contact that may have fewer nodes, in parts of the reference force."""
-
 
 @dataclass(frozen=True)
 class Piece:
@@ -167,7 +164,7 @@ def check_resolution(system: System, now: Configuration) -> None:
     """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
     pin = system.interfaces[0]
     closed = now.closed[pin.nodes]
-    if (closed[:-2] & closed[1:-1] & closed[2:]).any() or force_on_pin(system, now) <= NEXT_TO_NOTHING:
+    if (closed[:-2] & closed[1:-1] & closed[2:]).any() or force_on_pin(system, now) <= 1e-6:
         return
     most = max((patch.size for patch in runs(pin.grid, closed)), default=LEAST_CLOSED)
     if most < LEAST_CLOSED:

@@ -46,41 +46,11 @@ GapPlace = tuple[float, float]
 ACROSS = 24
 """Nodes across the contact on a grid of the survey."""
 
-FEWEST, MOST = 11, 60
-"""Least and largest number of nodes across the contact. Outside these limits another grid takes over."""
-
 LARGEST_PART = 0.25
 """Largest part of a step that is followed on one grid."""
 
-MOST_GROWTH = 3.0
-"""Largest growth of the force while the contact stays on one grid."""
-
-MOST_RELEASES = 10
-"""Times in one step that a contact is released where it can't be followed."""
-
-LEAST_PART = 1e-9
-"""Smallest part of a step that is tried."""
-
-MOST_TRIALS = 1500
-"""Trials for one step, at most."""
-
-MOST_BETWEEN = 400
-"""Places between two states of the survey, at most."""
-
-MOST_FAILURES = 500
-"""Parts that could not be followed, in one history, at most."""
-
 MOST_JUMPS = 30
 """Snaps of the pin in one history, at most."""
-
-WIDEST_HALF = 0.7
-"""Largest guess of half the width of a new contact, rad."""
-
-MOST_GUESSES = 20
-"""Guesses of the width of a new contact in a hole with an initial gap."""
-
-LEAST_WIDTH = 1e-6
-"""Smallest width of a contact, rad. A narrower one is not resolved."""
 
 
 def survey(
@@ -134,15 +104,15 @@ class _Survey:
 
     def follow(self, before: np.ndarray, target: np.ndarray) -> bool:
         """Follow a step between two loads, SI. Returns whether its end was reached."""
-        done, finer, releases = 0.0, 1.0, 0
-        for _ in range(MOST_TRIALS):
+        done, finer, releases, least_part = 0.0, 1.0, 0, 1e-9
+        for _ in range(1500):
             if done >= 1.0:
                 return True
             floats = not self._now.closed.any()
             stop = min(1.0, done + min(self._part, self._first_part if floats else 1.0))
             load = target if stop == 1.0 else before + stop * (target - before)
-            if not floats and _force(load) > MOST_GROWTH * _force(self._load) > 0.0 and stop - done > LEAST_PART:
-                self._part *= 0.5
+            if not floats and _force(load) > 3.0 * _force(self._load) > 0.0 and stop - done > least_part:
+                self._part *= 0.5  # on one grid the force grows threefold at most
                 continue
             if floats:
                 self._look_where_it_begins(load, finer)
@@ -151,10 +121,10 @@ class _Survey:
                 continue
             self._part *= 0.5
             self._failures += 1
-            if self._failures > MOST_FAILURES or self._jumps > MOST_JUMPS:
+            if self._failures > 500 or self._jumps > MOST_JUMPS:
                 return False
-            if self._part < LEAST_PART:
-                if floats or releases == MOST_RELEASES:
+            if self._part < least_part:
+                if floats or releases == 10:
                     return False
                 self._load = self._load.copy()
                 self._load[[P, Q, M]] = 0.0  # the next contact begins from no force on the pin
@@ -182,7 +152,7 @@ class _Survey:
             return False
         self._now, self._load = run.now, load
         self._note([self._place(patch) for patch in patches])
-        if counts and (min(counts) < FEWEST or min(counts) > MOST):
+        if counts and not 11 <= min(counts) <= 60:
             self._look_at_contact(1.0)
         return True
 
@@ -191,7 +161,7 @@ class _Survey:
         if len(places) == 1 and self._last is not None:
             (angle, width), (before, last_width) = places[0], self._last
             away = float(angle_between(angle, before))
-            count = min(int(0.6 * abs(away) / min(width, last_width)), MOST_BETWEEN)
+            count = min(int(0.6 * abs(away) / min(width, last_width)), 400)
             for part in np.arange(1, count) / max(count, 1):
                 self.places.append((before + part * away, last_width + part * (width - last_width)))
         self.places += places
@@ -204,7 +174,7 @@ class _Survey:
         begin = 0.5 * (theta[patch[0]] + left[patch[0]])
         end = 0.5 * (theta[patch[-1]] + right[patch[-1]])
         width = (end - begin) % (2.0 * math.pi) or 2.0 * math.pi
-        return begin + 0.5 * width, max(width, LEAST_WIDTH)
+        return begin + 0.5 * width, max(width, 1e-6)  # a narrower contact is not resolved
 
     def _look_at_contact(self, finer: float) -> None:
         """Go to a grid that is dense where the contact is now, `finer` times the usual spacing."""
@@ -252,11 +222,12 @@ class _Survey:
 
     def _half_width(self, load: np.ndarray, angle: float, overlap: float) -> float:
         """Half the width, rad, of a contact at `angle` under `load`, SI, or else of an `overlap`."""
-        scales, force, half = self._system.scales, _force(load), WIDEST_HALF
-        for _ in range(MOST_GUESSES if self._problem.gap else 1):  # the bend depends on the width
+        scales, force = self._system.scales, _force(load)
+        half = widest = 0.7
+        for _ in range(20 if self._problem.gap else 1):  # the bend depends on the width
             bent = max(bend(self._system, load / scales.loads, angle, half), 1e-300)
             square = force / scales.force / (math.pi * bent) if force > 0.0 else 2.0 * overlap / bent
-            half = min(math.sqrt(square), WIDEST_HALF)
+            half = min(math.sqrt(square), widest)
         return half
 
     def _change_grid(self, places: Sequence[GapPlace]) -> None:

@@ -153,9 +153,6 @@ LEAST_NEIGHBOURS = 128
 FEW_UNKNOWNS = 300
 """With at most so many unknowns a product with their stored columns takes less time than transforms (4,096 nodes)."""
 
-COPIED = 256
-"""Columns of slipping nodes that are copied together. It bounds the memory of the copies."""
-
 
 class Unknowns:
     """The unknown tractions of given statuses, and the displacement that they cause in all rows.
@@ -196,8 +193,9 @@ class Unknowns:
         operator = self._system.operator
         operator.fill(rows, self.rows, out)
         slipping = np.flatnonzero(self._coupling[self.normal])
-        for begin in range(0, slipping.size, COPIED):
-            part = slipping[begin : begin + COPIED]
+        together = 256  # bounds the memory of the copies
+        for begin in range(0, slipping.size, together):
+            part = slipping[begin : begin + together]
             nodes = self.normal[part]
             out[:, part] += operator.entries(rows, self._coupling.size + nodes) * self._coupling[nodes]
 

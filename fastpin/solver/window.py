@@ -29,9 +29,6 @@ from fastpin.solver.step import Piece, Position, Stepper, StepReport
 MARGIN = 48
 """Open nodes of a window on either side of the contact, at least; more for a contact of more nodes."""
 
-WIDEST = 4000
-"""Nodes of a window, at most."""
-
 
 class SecondPlaceError(Exception):
     """Internal: the pin touches the hole outside the window too. ``nodes``, bool, shape (n,), are the nodes there."""
@@ -165,7 +162,7 @@ class WindowStepper:
     def _open_window(self, closed: np.ndarray) -> Window:
         """Open a window round the nodes `closed`, bool, shape (n,)."""
         window = self._window = Window(self._system, closed)
-        if window.nodes.size > WIDEST:
+        if window.nodes.size > 4000:
             raise ResolutionError(f"the contacts are narrow and far apart: {window.nodes.size} nodes at a time")
         self._stepper = PathStepper(window.system, self._statistics, self._strict)
         return window
@@ -188,12 +185,8 @@ def stepper_of(system: System, options: SolveOptions, statistics: dict[str, floa
     return PathStepper(system, statistics, strict)
 
 
-MOST_OUTSIDE = 180
-"""Angles beyond an arc at which the gap is watched, at most: every two degrees for a short arc."""
-
-
 class OutsideGap:
-    """The gap beyond an arc of nodes, at up to :data:`MOST_OUTSIDE` angles: a pin may touch there too.
+    """The gap beyond an arc of nodes, at up to 180 angles: a pin may touch there too.
 
     Where a bush slips, the tractions in its seat bend its bore.
 
@@ -214,7 +207,7 @@ class OutsideGap:
         system = self._own(system)
         grid = system.grid
         n, ends = grid.size, (grid.theta[-1], grid.theta[0] + 2.0 * math.pi)
-        count = min(math.ceil((ends[1] - ends[0]) / node_spacing(grid)) - 1, MOST_OUTSIDE)
+        count = min(math.ceil((ends[1] - ends[0]) / node_spacing(grid)) - 1, 180)
         self._theta = np.linspace(*ends, max(count, LEAST_NODES) + 2)[1:-1]
         around = System.build(system.problem, Grid(np.r_[grid.theta, self._theta], closed=True), system.scales.force)
         rows, nodes = np.arange(n, around.grid.size), np.arange(n)
