@@ -101,7 +101,10 @@ def narrow_grids(
     places = survey(problem, _outline(problem, values), force, first_part, progress)
     if not places:
         return
-    distinct = _distinct_places(places)
+    distinct: list[tuple[float, float]] = []  # without each place that lies on a narrower place
+    for angle, width in sorted(places, key=lambda place: place[1]):
+        if not any(abs(float(angle_between(angle, other))) < 0.25 * narrower for other, narrower in distinct):
+            distinct.append((angle, width))
     start, length = _reach(places)
     for across in LEAST_ACROSS:
         width = across * length / options.nodes  # as dense everywhere as equally spaced nodes
@@ -123,15 +126,6 @@ def _reach(places: list[tuple[float, float]]) -> tuple[float, float]:
     gaps = np.r_[starts[1:], starts[0] + 2.0 * math.pi] - reached
     widest = int(np.argmax(gaps))
     return float(starts[(widest + 1) % starts.size]), 2.0 * math.pi - max(float(gaps[widest]), 0.0)
-
-
-def _distinct_places(places: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The places, without each place that lies on a narrower place."""
-    kept: list[tuple[float, float]] = []
-    for angle, width in sorted(places, key=lambda place: place[1]):
-        if not any(abs(float(angle_between(angle, other))) < 0.25 * narrower for other, narrower in kept):
-            kept.append((angle, width))
-    return kept
 
 
 def _touched_arc(

@@ -33,8 +33,6 @@ from fastpin.solver.interfaces import PinView, with_part
 from fastpin.solver.rest import place_between, put_at_rest
 from fastpin.solver.settling import FiniteStep
 
-NOT_FOUND = "the pressure of the interference fit was not found; use more nodes"
-
 
 def unloaded_configuration(system: System) -> Configuration:
     """The configuration before any load: concentric without contact, or the pressure of an interference fit.
@@ -72,10 +70,16 @@ def unloaded_configuration(system: System) -> Configuration:
     configuration.status[:] = np.where(overlaps, resting_status(system), OPEN)
     configuration.origin = np.zeros(2)
     configuration.gap = zeros.copy()
-    # In a plate that is not symmetric or not isotropic, or with a gap.
     bodies = system.bodies
-    is_uneven = bool(system.problem.gap) or (bodies is not None and bool(bodies.matrix.size or bodies.anisotropy))
-    found = (_uneven if is_uneven else _uniform)(system, configuration)
+    if system.problem.gap or (bodies is not None and (bodies.matrix.size or bodies.anisotropy)):
+        found = _uneven(system, configuration)
+    else:  # in a symmetric, isotropic plate a uniform pressure, without shear and slip
+        solution = solve_statuses(system, configuration.status, configuration.slip, load, gap)
+        found = None
+        if solution is not None and solution.pressure.min() > 0.0:
+            found = configuration.changed(pressure=solution.pressure)
+    if found is None:
+        raise ConvergenceError("the pressure of the interference fit was not found; use more nodes")
     found.work = elastic_energy(system, found)  # the work of the assembly, without that of its friction
     return found
 
@@ -109,17 +113,8 @@ def _is_gripped(system: System) -> bool:
     return widest_place(system.grid.theta, system.concentric_gap, problem.driven)[0] < 0.0
 
 
-def _uniform(system: System, start: Configuration) -> Configuration:
-    """The uniform pressure of an interference fit, without shear and slip."""
-    solution = solve_statuses(system, start.status, start.slip, start.load, start.rest_gap)
-    if solution is None or solution.pressure.min() <= 0.0:
-        raise ConvergenceError(NOT_FOUND)
-    start.pressure = solution.pressure
-    return start
-
-
-def _uneven(system: System, start: Configuration) -> Configuration:
-    """The tractions of an interference that grows from a neat fit, as of a cooled pin that warms up.
+def _uneven(system: System, start: Configuration) -> Configuration | None:
+    """The tractions of an interference that grows from a neat fit, as of a cooled pin that warms up; or None.
 
     All grows in proportion to the interference, so one implicit increment is exact, friction included. With an initial
     gap the pin may touch in some places only.
@@ -129,7 +124,7 @@ def _uneven(system: System, start: Configuration) -> Configuration:
     if found is not None and (system.problem.gap or is_laminate):
         found = _corrected(system, start, found)
     if found is None or not found.closed.any() or worst_residual(system, found) > MAX_RESIDUAL:
-        raise ConvergenceError(NOT_FOUND)
+        return None
     return found
 
 

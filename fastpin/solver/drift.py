@@ -38,7 +38,6 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.path import MOST_EVENTS, StepLostError
 from fastpin.solver.settling import settle
-from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.unknowns import DenseUnknowns
 
 LIMIT = 1e-13
@@ -335,8 +334,9 @@ class DriftPath:
         middle.slip_tally = slip_tally_between(first, middle)
         last.slip_tally = slip_tally_between(middle, last)
         if last.slip_tally.is_counted:
-            whole_tally = slip_tally_between(first, last)
-            last.slip_tally = _simpson(last.slip_tally, whole_tally)
+            tally, whole_tally = last.slip_tally.sums, slip_tally_between(first, last).sums
+            for row in (1, *range(4, len(tally))):  # int -T ds, and int N |ds| with wear
+                tally[row] = (4.0 * tally[row] - whole_tally[row]) / 3.0
         self.now, self.fraction, self._here = last, end.time, end
 
     def _configuration(self, moment: Moment) -> Configuration:
@@ -446,11 +446,3 @@ def _flipped(moment: Moment, ending: np.ndarray) -> np.ndarray:
     status[rest] = STICK
     status[normal] = np.where(moment.status == OPEN, slides, OPEN)[normal]
     return status
-
-
-def _simpson(halves: SlipTally, whole: SlipTally) -> SlipTally:
-    """The tally over two halves of a stretch, with the integrals of tractions by Simpson's rule."""
-    better = halves.copy()
-    for row in (1, *range(4, len(better.sums))):  # int -T ds, and int N |ds| with wear
-        better.sums[row] = (4.0 * halves.sums[row] - whole.sums[row]) / 3.0
-    return better

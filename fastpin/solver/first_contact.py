@@ -525,10 +525,15 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     square of the contact's half-width.
     """
     force = float(np.hypot(change[Q], change[P]))
-    nearest = _nearest(system, resting)
+    nearest, n, weights = _nearest(system, resting), system.grid.size, system.grid.weights
     theta = system.grid.theta[nearest]
     gap = hole_gap(system, resting.load, theta)[0]
-    half = 2.5 * _width(system, nearest)
+    if system.grid.uniform:
+        spacing = float(np.sort(weights)[n // 2])  # the hats at the ends of an arc are halves
+    else:
+        beside = np.arange(nearest - FIRST_BESIDE, nearest + FIRST_BESIDE + 1)
+        spacing = float(weights[beside % n if system.grid.closed else beside.clip(0, n - 1)].mean())
+    half = 2.5 * spacing
     bent = max(bend(system, resting.load, theta, half), 0.0)
     if force == 0.0:
         shrinking = float(gap - hole_gap(system, resting.load + change, theta)[0])
@@ -560,12 +565,3 @@ def _nearest(system: System, resting: Configuration) -> int:
     touching = np.flatnonzero(resting.gap - resting.gap.min() <= SLIGHT * resting.gap.max())
     gap, _, curvature = hole_gap(system, resting.load, system.grid.theta[touching])
     return int(touching[np.argmin(gap + curvature)])
-
-
-def _width(system: System, node: int) -> float:
-    """Spacing of the nodes round a node, rad: the largest of the nodes that the first contact may close."""
-    if system.grid.uniform:
-        return float(np.sort(system.grid.weights)[system.grid.size // 2])  # the hats at the ends of an arc are halves
-    beside = np.arange(node - FIRST_BESIDE, node + FIRST_BESIDE + 1)
-    n = system.grid.size
-    return float(system.grid.weights[beside % n if system.grid.closed else beside.clip(0, n - 1)].mean())

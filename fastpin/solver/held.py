@@ -148,8 +148,12 @@ def _fill_in_laminate(system: System, closed: np.ndarray, table: HeldTable) -> b
     core = neighbours.core
     motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
     moved = core @ motion
-    small = _motion_by_forces(system, equilibrium, moved)
-    if small is None:
+    complement = system.motion_rows - equilibrium @ moved
+    try:
+        small = np.linalg.inv(complement)  # the motion by the forces, while the closed nodes stick
+    except np.linalg.LinAlgError:
+        return False
+    if not np.linalg.norm(complement) * np.linalg.norm(small) < MOST_CONDITION:
         return False
     responses = neighbours.responses()
     free, tied, acting = -responses, responses.T, neighbours.complement()
@@ -165,17 +169,6 @@ def _fill_in_laminate(system: System, closed: np.ndarray, table: HeldTable) -> b
     turned = np.concatenate([-moved, system.motion[others] - tied @ motion, np.eye(len(small))])
     blas.dgemm(1.0, turned, moving, beta=1.0, c=matrix, overwrite_c=1)
     return _holds(system, closed, table)
-
-
-def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray) -> np.ndarray | None:
-    """The motion (m, m) by the forces while the closed nodes stick; None if they hardly hold the pin."""
-    complement = system.motion_rows - equilibrium @ moved
-    try:
-        small: np.ndarray = np.linalg.inv(complement)
-    except np.linalg.LinAlgError:
-        return None
-    sound = np.linalg.norm(complement) * np.linalg.norm(small) < MOST_CONDITION
-    return small if sound else None
 
 
 def _holds(system: System, closed: np.ndarray, table: HeldTable) -> bool:

@@ -339,7 +339,17 @@ class Run:
                 return
         before = position.now.load.copy()
         before[[P, Q, M]] = 0.0  # a contact that was released under a little load begins anew from none
-        now, part = self._first_contact(before, load)
+        friction_at = before  # a first contact has the friction of the load at which it is found
+        for _ in range(12):  # fixed-point iterations, at most, while the friction changes
+            system = self.system.under(friction_at)
+            now, part = first_contact(system, position.now, before, load, self.strict, not self.is_coarse)
+            if now.load[FRICTION_CHANGE] == friction_at[FRICTION_CHANGE]:
+                break
+            friction_at = now.load
+        else:
+            raise ConvergenceError(
+                "no first contact was found while the friction changes; change it after the first load"
+            )
         now.slip_tally = slip_tally_with(now)
         position.now = now
         position.touched |= now.closed
@@ -347,17 +357,6 @@ class Run:
         if part == 1.0:
             now.load = load
         position.fresh = part if part < 1.0 else 0.0
-
-    def _first_contact(self, before: np.ndarray, load: np.ndarray) -> tuple[Configuration, float]:
-        """Find the first contact, see :func:`first_contact`. Its friction is that of the load at which it is found."""
-        friction_at = before
-        for _ in range(12):  # fixed-point iterations, at most
-            system = self.system.under(friction_at)
-            found = first_contact(system, self.now, before, load, self.strict, not self.is_coarse)
-            if found[0].load[FRICTION_CHANGE] == friction_at[FRICTION_CHANGE]:
-                return found
-            friction_at = found[0].load
-        raise ConvergenceError("no first contact was found while the friction changes; change it after the first load")
 
     def _release_if_unloaded(self, piece: Piece, load: np.ndarray) -> None:
         """Release the pin after a complete unloading, when the contact carries nothing any more."""

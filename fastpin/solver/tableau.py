@@ -293,7 +293,13 @@ class TractionRows:
         """
         if self._system.operator.is_stored:
             return False
-        self._follow(tableau, updates.stop)
+        done, self._done = slice(self._done, updates.stop), updates.stop
+        for source, slot in zip(tableau.source[done], tableau.slot[done], strict=True):
+            if source == slot:
+                self._loaded[slot] = not self._loaded[slot]
+            else:  # the tie of a node has turned round
+                node = max(source, slot)
+                self._coupling[node] = -self._coupling[node]
         n, rows, loaded = self._system.grid.size, len(values), self._loaded
         parts = [_extent(loaded[:n], 0), _extent(loaded[n:], n), slice(2 * n, rows)]
         kept = sum(part.stop - part.start for part in parts)
@@ -309,16 +315,6 @@ class TractionRows:
         displaced += self._system.motion @ values[2 * n :]
         np.copyto(values[: 2 * n], displaced, where=~loaded[:, None])
         return True
-
-    def _follow(self, tableau: Tableau, end: int) -> None:
-        """Follow the exchanges and the changes of ties up to the update `end`. A tie that changes turns round."""
-        for source, slot in zip(tableau.source[self._done : end], tableau.slot[self._done : end], strict=True):
-            if source == slot:
-                self._loaded[slot] = not self._loaded[slot]
-            else:
-                node = max(source, slot)
-                self._coupling[node] = -self._coupling[node]
-        self._done = end
 
 
 def _extent(loaded: np.ndarray, begin: int) -> slice:

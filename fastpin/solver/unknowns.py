@@ -321,7 +321,11 @@ class StickingRun(Unknowns):
         self.singular = not sound
         if sound:
             self._small = np.linalg.inv(complement)
-            self.singular = not self._probe() < MOST_RESIDUAL
+            right = np.cos(np.arange(float(self.size)))  # one solve, checked by the matrices
+            unknowns = self.solve(right)
+            balance = system.equilibrium @ self.expand(unknowns) + system.motion_rows @ unknowns[self.count :]
+            error = np.abs(np.r_[self.displacement(unknowns)[self.rows], balance] - right).max()
+            self.singular = not error < MOST_RESIDUAL
 
     @staticmethod
     def is_for(system: System, status: np.ndarray) -> bool:
@@ -392,13 +396,6 @@ class StickingRun(Unknowns):
         result[: self.count] -= self._moved @ motion
         result[self.count :] = motion
         return result
-
-    def _probe(self) -> float:
-        """Largest residual of one solve, from the matrices."""
-        right, system = np.cos(np.arange(float(self.size))), self._system
-        unknowns = self.solve(right)
-        balance = system.equilibrium @ self.expand(unknowns) + system.motion_rows @ unknowns[self.count :]
-        return float(np.abs(np.r_[self.displacement(unknowns)[self.rows], balance] - right).max())
 
 
 def have_toeplitz_matrix(system: System, nodes: np.ndarray, least: int) -> bool:
