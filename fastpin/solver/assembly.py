@@ -129,7 +129,7 @@ def _uneven(system: System, start: Configuration) -> Configuration | None:
 
 
 def _corrected(system: System, start: Configuration, found: Configuration) -> Configuration:
-    """The configuration `found` from `start` without the rounding of its solve: one more solve with what is left."""
+    """One step of iterative refinement of the configuration `found` from `start`."""
     n = system.grid.size
     left = system.displacement(found.tractions, found.motion, found.load, found.rest_gap)
     more = solve_statuses(system, found.status, start.slip - left[n:], np.zeros_like(found.load), left[:n])

@@ -204,7 +204,7 @@ def part_of(joint: JointSystem, configuration: Configuration, place: int) -> Con
 
 
 def with_part(joint: JointSystem, configuration: Configuration, place: int, part: Configuration) -> Configuration:
-    """The configuration of all interfaces with another contact of one, and with its load, work and dissipation."""
+    """Replace the contact of one interface by `part`; load, work and dissipation come from it."""
     own, at, whole = joint.interfaces[place], slice(2 * place, 2 * place + 2), configuration.copy()
     for name in NODAL:
         values = getattr(whole, name).copy()

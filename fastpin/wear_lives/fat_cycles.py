@@ -135,7 +135,7 @@ class FatCycles:
         self._approach = 0
 
     def begin(self, loads: np.ndarray, wears: bool = True) -> Worn:
-        """Follow what leads to the cycle once, corners (corners, loads) in SI, with its own wear only if it `wears`."""
+        """Follow the corners before the first cycle, (corners, loads) in SI; with `wears` they wear the contact."""
         self._approach = len(loads)
         start = Worn(0, 1, 0, np.zeros((2, self.run.system.grid.size)), 0.0, self._restart(), loses_contact=True)
         place = self._followed(start, loads, 1 if wears else 0)
@@ -334,7 +334,7 @@ class FatCycles:
         return depth, jump * self._total * np.minimum(slip, mean)
 
     def _error(self, start: Worn, fine: Worn, coarse: Worn) -> float:
-        """The larger error of a fat cycle: of the worn gap, in parts of what it may add, or of the pressure.
+        """The larger of the relative errors of worn gap and pressure of a fat cycle.
 
         Half of the error goes with the growth of the largest depth, and half with the cycles. So the errors of the gap
         add up to at most the tolerance, in parts of the largest depth. Without the second half a joint that has shaken
