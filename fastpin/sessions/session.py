@@ -418,7 +418,9 @@ class Session:
     def _arrive(self, place: Place, run: Run) -> None:
         """Make the end of a run the present place."""
         system, state = run.system, self._recorder.states[-1]
-        self._leave_for(replace(place, grid=run.grid, force=system.scales.force, restart=run.bookmark(), state=state))
+        self._leave_for(
+            replace(place, grid=run.grid, force=system.scales.force, restart=run.restart(shared=True), state=state)
+        )
         self._run, self._system = run if run.strict else None, system
 
     def _leave_for(self, place: Place) -> None:
@@ -522,7 +524,7 @@ class Session:
                 except ArcError:
                     if (wider := self._wider_system(run)) is None:
                         raise
-                    run = self._start(wider, carried(run.system, wider, run.bookmark()), run.strict)
+                    run = self._start(wider, carried(run.system, wider, run.restart(shared=True)), run.strict)
             self._recorder.begin(run)
             self._arrive(place, self._lead(run, place, given))
         return self._here.state
@@ -534,7 +536,7 @@ class Session:
         """
         load, here = None if given is None else complete_load(given, run.load), self._here
         while True:
-            last = None if load is None else here.restart if run is self._run else run.bookmark()
+            last = None if load is None else here.restart if run is self._run else run.restart(shared=True)
             try:
                 run.follow() if load is None else run.step_to(load)
             except ArcError as error:

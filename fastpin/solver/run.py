@@ -247,18 +247,14 @@ class Run:
         self.stepper.leave(self.position)
         self._begin_at(replace(start, repeats=Repeats(list(start.repeats))))
 
-    def bookmark(self) -> Restart:
-        """The restart from the last corner for :meth:`go_back`. It takes less time than :meth:`restart`.
+    def restart(self, shared: bool = False) -> Restart:
+        """The restart from the last corner that was reached.
 
-        The remembered configurations are shared. So it does not hold for a history with cycles.
+        A `shared` one has the remembered configurations of the run itself, and takes less time. It does not hold for a
+        history with cycles.
         """
-        return self._restart(Repeats(list(self.repeats)), {})
-
-    def restart(self) -> Restart:
-        """The restart from the last corner that was reached."""
-        return self._restart(self.repeats.copy(same_history=True), copied_ends(self.corner_log.marks))
-
-    def _restart(self, repeats: Repeats, marks: dict[CycleKey, CycleEnd]) -> Restart:
+        marks: dict[CycleKey, CycleEnd] = {} if shared else copied_ends(self.corner_log.marks)
+        repeats = Repeats(list(self.repeats)) if shared else self.repeats.copy(same_history=True)
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work, repeats,
             marks, ReadOnlyDict(self.statistics), self.slip_tally.to_corner, self.seat_dissipation,

@@ -39,9 +39,6 @@ from fastpin.states.walking import walk_doubts
 DEFAULTS = SolveOptions()
 """The default options of :func:`solve`."""
 
-USER = 3
-"""Calls from a warning to the line of the user, above :func:`solve` and the explanation of its keywords."""
-
 
 @explains_keywords
 def solve(
@@ -127,11 +124,11 @@ def solve(
     task = Task(problem, as_history(history), options, grid, progress)
     if error_bars:
         check_halves(task, start)
-    warn_of(doubts(problem, task.history, options, grid), USER)
+    warn_of(doubts(problem, task.history, options, grid), 3)  # above are the explanation of keywords and the user
     result = _follow_task(task, start)
-    warn_of(pressure_doubts(problem, task.history, (state.pressure for state in result.states)), USER)
-    warn_of(yield_doubts_of(problem, task.history, result.states), USER)
-    warn_of(walk_doubts(result.states, result.cycles), USER)
+    pressed = pressure_doubts(problem, task.history, (state.pressure for state in result.states))
+    yielding = yield_doubts_of(problem, task.history, result.states)
+    warn_of([*pressed, *yielding, *walk_doubts(result.states, result.cycles)], 3)
     return _with_coarse(task, start, result) if error_bars else result
 
 

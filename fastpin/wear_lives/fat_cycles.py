@@ -278,7 +278,7 @@ class FatCycles:
 
         If much wears, the piece has parts, and the wear of each one is applied at its end.
         """
-        run, start, before = self.run, self.run.bookmark(), self.run.load
+        run, start, before = self.run, self.run.restart(shared=True), self.run.load
         run.step_to(target, kept=False)
         parts = self._parts(start.configuration, jump) if jump else 1
         if parts > 1:
@@ -357,7 +357,7 @@ class FatCycles:
             )
 
     def _restart(self, dissipation: float = 0.0, work: float = 0.0) -> Restart:
-        return replace(self.run.bookmark(), dissipation=dissipation, work=work, slip_tally=NOT_COUNTED)
+        return replace(self.run.restart(shared=True), dissipation=dissipation, work=work, slip_tally=NOT_COUNTED)
 
 
 def _name_cycle(error: SolveError, cycle: int) -> None:

@@ -89,7 +89,7 @@ class WearRun(Run):
         else:
             after, removal = self._follow(before, depth, softness)
         dissipation, work = self.dissipation + removal.dissipation, self.work + removal.work
-        self.go_back(replace(self.bookmark(), configuration=after, dissipation=dissipation, work=work))
+        self.go_back(replace(self.restart(shared=True), configuration=after, dissipation=dissipation, work=work))
         return removal
 
     def _follow(
