@@ -95,10 +95,10 @@ def solve_joint(
     values, began = load_values(joint, corners), time.perf_counter()
     states: list[JointState] = []
     snaps, step = 0, 0
-    with deferred_interrupts() as request, one_blas_thread():
+    with deferred_interrupts() as caught, one_blas_thread():
 
         def report(part: float) -> None:
-            if request.stop:
+            if caught:
                 raise Interrupted
             if progress is not None:
                 progress(step + part, len(values))

@@ -43,7 +43,6 @@ from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Run
 from fastpin.solver.solving import DEFAULTS, solve
 from fastpin.solver.task import (
-    StopRequest,
     Task,
     as_history,
     check_options,
@@ -151,7 +150,7 @@ class Session:
         self._run: Run | None = None
         self._system: System | None = None
         self._limits: dict[str, tuple[int, float]] = {}
-        self._request: StopRequest | None = None
+        self._caught: list[int] = []  # a signal of Ctrl-C while the session is at work
         self._recorder = LatestState()
 
     @property
@@ -384,8 +383,8 @@ class Session:
     @contextmanager
     def _guarded(self, place: Place) -> Iterator[None]:
         """Hold back Ctrl-C and BLAS's threads on the way to a place. After an error the session is where it was."""
-        with deferred_interrupts() as request, one_blas_thread():
-            self._request = request
+        with deferred_interrupts() as caught, one_blas_thread():
+            self._caught = caught
             try:
                 yield
             except (SolveError, Interrupted) as ended:
@@ -396,13 +395,13 @@ class Session:
                 self._run = None
                 raise
             finally:
-                self._request = None
-        if request.stop:
+                self._caught = []
+        if caught:
             raise Interrupted(self._result_before(self._here.loads))
 
     def _check_request(self, done: float = 0.0, total: int = 0) -> None:
         """The progress of all runs: raise Interrupted after Ctrl-C."""
-        if self._request is not None and self._request.stop:
+        if self._caught:
             raise Interrupted
 
     def _result_before(self, loads: Loads) -> Result | None:

@@ -114,8 +114,8 @@ class Task:
         Interrupted
             After Ctrl-C.
         """
-        with deferred_interrupts() as request, one_blas_thread():
-            progress = self._stoppable_progress(request)
+        with deferred_interrupts() as caught, one_blas_thread():
+            progress = self._stoppable_progress(caught)
             chooser = self if unfit is None else replace(self, grid=None)
             run = first_followed(
                 chooser.tries(progress, unfit), functools.partial(self._follow_on, recorder, progress, None)
@@ -209,8 +209,8 @@ class Task:
         SolveError, Interrupted
             See :meth:`follow`.
         """
-        with deferred_interrupts() as request, one_blas_thread():
-            progress = self._stoppable_progress(request)
+        with deferred_interrupts() as caught, one_blas_thread():
+            progress = self._stoppable_progress(caught)
             try:
                 return self._follow_on(recorder, progress, start, grid, strict=True)
             except ConvergenceError:
@@ -247,11 +247,11 @@ class Task:
         run.follow()
         return run
 
-    def _stoppable_progress(self, request: StopRequest) -> RunProgress:
-        """The progress callable of a run. After Ctrl-C it raises Interrupted, which stops the run."""
+    def _stoppable_progress(self, caught: list[int]) -> RunProgress:
+        """The progress callable of a run. It raises Interrupted, which stops the run, after a `caught` Ctrl-C."""
 
         def progress(done: float, total: int) -> None:
-            if request.stop:
+            if caught:
                 raise Interrupted
             if self.progress is not None:
                 self.progress(done, total)
@@ -372,26 +372,19 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
     return unit * 2.0 ** math.ceil(math.log2(largest / unit))
 
 
-class StopRequest:
-    """A request to stop. ``stop`` becomes True at the first Ctrl-C."""
-
-    def __init__(self) -> None:
-        self.stop = False
-
-
 @contextmanager
-def deferred_interrupts() -> Iterator[StopRequest]:
-    """Note a first Ctrl-C in the request instead of raising. A second Ctrl-C raises KeyboardInterrupt as usual.
+def deferred_interrupts() -> Iterator[list[int]]:
+    """Note the signal of a first Ctrl-C in a list instead of raising. A second one raises KeyboardInterrupt as usual.
 
     Outside the main thread, and where the program has its own handlers, the first Ctrl-C is not held back. SIGTERM and
     SIGHUP are treated like Ctrl-C if the program has given them Python's handler of SIGINT.
     """
-    request = StopRequest()
+    caught: list[int] = []
 
     def note(number: int, frame: FrameType | None) -> None:
-        if request.stop:
+        if caught:
             signal.default_int_handler(number, frame)
-        request.stop = True
+        caught.append(number)
 
     held = []
     if threading.current_thread() is threading.main_thread():
@@ -399,7 +392,7 @@ def deferred_interrupts() -> Iterator[StopRequest]:
     for number in held:
         signal.signal(number, note)
     try:
-        yield request
+        yield caught
     finally:
         for number in held:
             signal.signal(number, signal.default_int_handler)

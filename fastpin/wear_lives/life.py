@@ -196,10 +196,10 @@ class WearTask:
         Interrupted
             After Ctrl-C.
         """
-        with deferred_interrupts() as request, one_blas_thread():
+        with deferred_interrupts() as caught, one_blas_thread():
 
             def watch(done: float, total: int) -> None:
-                if request.stop:
+                if caught:
                     raise Interrupted
 
             def on_grid(grid: Grid, strict: bool) -> None:
@@ -242,10 +242,10 @@ class WearTask:
         SolveError, Interrupted
             See :meth:`follow`.
         """
-        with deferred_interrupts() as request, one_blas_thread():
+        with deferred_interrupts() as caught, one_blas_thread():
 
             def watch(done: float, total: int) -> None:
-                if request.stop:
+                if caught:
                     raise Interrupted
 
             life = self._life(grid, place.restart.force, watch)
