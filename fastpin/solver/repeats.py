@@ -69,25 +69,6 @@ class CornerEntry:
     slip_tally: SlipTally = NOT_COUNTED
 
 
-@dataclass(frozen=True, eq=False)
-class Period:
-    """A period of corners that repeats.
-
-    Attributes
-    ----------
-    logged : list of CornerEntry
-        The corners of one period.
-    times : int
-        How many times the period repeats.
-    counts : dict of CycleKey to int
-        Growth of the number of each cycle from one period to the next.
-    """
-
-    logged: list[CornerEntry]
-    times: int
-    counts: dict[CycleKey, int]
-
-
 def copied_ends(marks: dict[CycleKey, CycleEnd]) -> dict[CycleKey, CycleEnd]:
     """Copies of cycle ends. They change independently of the originals."""
     return {key: replace(mark) for key, mark in marks.items()}
@@ -176,7 +157,9 @@ class CornerLog:
             del self.marks[key]
         return periods
 
-    def period(self, now: int, length: int, since: int, keep: KeepRule, stops: Collection[int]) -> Period | None:
+    def period(
+        self, now: int, length: int, since: int, keep: KeepRule, stops: Collection[int]
+    ) -> tuple[list[CornerEntry], int, dict[CycleKey, int]] | None:
         """Find the period that repeats after the corner `now`.
 
         Parameters
@@ -195,8 +178,9 @@ class CornerLog:
 
         Returns
         -------
-        Period or None
-            None if the loads ahead differ, or if the log lacks a part of the period.
+        (list of CornerEntry, int, dict of CycleKey to int), or None
+            The corners of one period, how many times it repeats, and by how much the number of each cycle grows from
+            one period to the next. None if the loads ahead differ, or if the log lacks a part of the period.
         """
         history, following = self.history, now + 1
         with_kept = math.lcm(length, keep.every)  # so that the same corners are kept
@@ -212,53 +196,46 @@ class CornerLog:
             return None
         logged = [self.log[k - length] for k in range(length)]
         begin = now - length
-        if any(cycle.corner - cycle.length < begin for entry in logged for _, cycle in entry.cycles):
+        cycles = [pair for entry in logged for pair in entry.cycles]
+        if any(cycle.corner - cycle.length < begin for _, cycle in cycles):
             return None  # a cycle began before the period: its changes will not repeat
         if any(mark.number == 0 and mark.corner > begin for mark in self.marks.values()):
             return None  # a cycle has begun in the period and not ended
         if unkept:
             logged = [replace(entry, kept=[]) for entry in logged]
-        return Period(logged, ahead // length, _counts(logged, begin))
+        ended, counts = {key for key, _ in logged[-1].cycles}, Counter(key for key, _ in cycles)
+        for key, cycle in cycles:
+            if cycle.number == 1 and (cycle.corner - cycle.length > begin or key not in ended):
+                counts[key] = 0  # it begins anew in every period
+        return logged, ahead // length, counts
 
-    def again(self, period: Period, time: int, corner: int) -> list[CornerEntry]:
-        """Log the corners of a period once more, and return their entries.
+    def again(
+        self, logged: list[CornerEntry], counts: dict[CycleKey, int], time: int, corner: int
+    ) -> list[CornerEntry]:
+        """Log the corners of a period once more, and return their entries; see :meth:`period`.
 
         `time` counts the repetitions from 1. `corner` is the first corner of this repetition.
         """
-        length = len(period.logged)
+        length = len(logged)
         later = [
             replace(
                 entry,
                 cycles=[
-                    (key, c._replace(corner=c.corner + time * length, number=c.number + time * period.counts[key]))
+                    (key, c._replace(corner=c.corner + time * length, number=c.number + time * counts[key]))
                     for key, c in entry.cycles
                 ],
             )
-            for entry in period.logged
+            for entry in logged
         ]
         self.log.extend(later)
         for key, mark in self.marks.items():
             if mark.corner >= corner - length:
                 mark.corner += length
-                mark.number += period.counts.get(key, 0) if mark.number else 0
+                mark.number += counts.get(key, 0) if mark.number else 0
             else:
                 for entry in later:
                     mark.dissipation += entry.dissipation
         return later
-
-
-def _counts(logged: list[CornerEntry], begin: int) -> dict[CycleKey, int]:
-    """Growth of the number of each cycle in a period that begins at the corner `begin`.
-
-    The growth is 0 for a cycle that begins anew in every period.
-    """
-    cycles = [pair for entry in logged for pair in entry.cycles]
-    ended = {key for key, _ in logged[-1].cycles}
-    counts = Counter(key for key, _ in cycles)
-    for key, cycle in cycles:
-        if cycle.number == 1 and (cycle.corner - cycle.length > begin or key not in ended):
-            counts[key] = 0
-    return counts
 
 
 SAME = 5e-14

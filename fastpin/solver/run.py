@@ -409,13 +409,12 @@ class Run:
         period = self.corner_log.period(last, length, since, self.keep, self.stops)
         if period is None:
             return
-        length = len(period.logged)
-        log.info(
-            "corner %d: the last %d corners repeat %d times and are not solved again", last + 1, length, period.times
-        )
+        logged, times, counts = period
+        length = len(logged)
+        log.info("corner %d: the last %d corners repeat %d times and are not solved again", last + 1, length, times)
         in_period = [known for known in self.repeats if known.last > last - length]
-        for time in range(1, period.times + 1):
-            entries = self.corner_log.again(period, time, self.corner)
+        for time in range(1, times + 1):
+            entries = self.corner_log.again(logged, counts, time, self.corner)
             self._book_again(entries, time)
             for known in in_period:
                 known.last += length
