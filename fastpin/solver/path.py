@@ -186,7 +186,7 @@ class PathStep:
                     checked = 0
                     continue
                 last = settlings == 3
-                if not exceeds_bounds(correction) or (last and _is_rounding(correction)):
+                if not exceeds_bounds(correction, last):
                     return correction.settled
                 if last:
                     raise StepLostError(exchange.CYCLING, self.fraction)
@@ -453,20 +453,14 @@ def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerm
     )
 
 
-def exceeds_bounds(correction: Correction) -> bool:
-    """Whether a correction exceeds the bounds of its statuses by more than rounding."""
-    settled, (traction, gap) = correction.settled, correction.beyond
-    return bool(
-        (traction > 0.0 and traction > MOST_DRIFT * settled.pressure.max())
-        or (gap > 0.0 and gap > MOST_DRIFT * settled.gap.max())
-    )
+def exceeds_bounds(correction: Correction, last: bool = False) -> bool:
+    """Whether a correction exceeds the bounds of its statuses by more than rounding.
 
-
-def _is_rounding(correction: Correction) -> bool:
-    """Whether a correction exceeds the bounds of its gaps only, by rounding of the largest displacement.
-
-    At a stop where gaps have opened this instant, the largest gap is itself rounding.
+    At a stop where gaps have opened this instant, the largest gap is itself rounding. At the `last` trial rounding of
+    the largest displacement counts, too.
     """
     settled, (traction, gap) = correction.settled, correction.beyond
-    length = conditions.ROUNDING * max(float(np.abs(settled.slip).max()), float(np.abs(settled.motion).max()))
-    return bool(traction <= MOST_DRIFT * settled.pressure.max() and gap <= length)
+    if traction > 0.0 and traction > MOST_DRIFT * settled.pressure.max():
+        return True
+    length = max(float(np.abs(settled.slip).max()), float(np.abs(settled.motion).max())) if last else 0.0
+    return bool(gap > conditions.ROUNDING * length and gap > MOST_DRIFT * settled.gap.max())

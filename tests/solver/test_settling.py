@@ -237,7 +237,7 @@ def test_only_gaps_may_miss_their_bounds_by_the_rounding_of_displacements(titani
         solution = settled.copy().values
         getattr(solution, name)[node] += error
         beyond = conditions.beyond_bounds(solution, settled.values)
-        assert path._is_rounding(Correction(settled, 0.0, 0.0, beyond)) == is_rounding
+        assert path.exceeds_bounds(Correction(settled, 0.0, 0.0, beyond), last=True) != is_rounding
 
 
 def test_too_many_events_are_told_from_a_snap(monkeypatch, titanium_in_aluminium):
