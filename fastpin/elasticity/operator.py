@@ -117,39 +117,6 @@ class DenseOperator(Operator):
         return np.array(self.matrix, dtype) if copy else self.matrix.astype(dtype or float, copy=False)
 
 
-class SoftOperator(Operator):
-    """An operator whose nodes are softer: a pressure also opens the gap at its own node.
-
-    Parameters
-    ----------
-    base : Operator
-    softness : ndarray, shape (n,)
-        Gap per pressure at each node, beside that of `base`.
-    """
-
-    by_distance = False
-
-    def __init__(self, base: Operator, softness: np.ndarray) -> None:
-        super().__init__(base.size)
-        self.is_stored = base.is_stored
-        self._base, self._softness = base, np.concatenate([softness, np.zeros_like(softness)])
-
-    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
-        product: np.ndarray = self._base @ tractions + (self._softness * tractions.T).T
-        return product
-
-    def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
-        self._base.fill(rows, columns, out)
-        out += np.where(rows[:, None] == columns, self._softness[columns], 0.0)
-
-    def diagonal(self) -> np.ndarray:
-        return self._base.diagonal() + self._softness
-
-    @cached_property
-    def matrix(self) -> np.ndarray | None:  # type: ignore[override]
-        return None if self._base.matrix is None else self.entries()
-
-
 def _spectra(kernels: np.ndarray, signs: tuple[float, ...], closed: bool) -> tuple[int, np.ndarray]:
     """The period of convolutions with kernels of the distance of two nodes, and the transforms of the kernels.
 

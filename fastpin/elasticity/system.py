@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, make_drive
-from fastpin.elasticity.operator import DenseOperator, Operator, SoftOperator, make_operator, uniform_part
+from fastpin.elasticity.operator import DenseOperator, Operator, make_operator, uniform_part
 from fastpin.elasticity.terms import BodyTerms, body_terms, thermal_columns
 from fastpin.kernels.arrays import Equations
 from fastpin.model.grid import Grid, arc_of
@@ -341,19 +341,6 @@ class System:
         motion_rows[2, 2] = 1.0
         friction = np.zeros_like(self.friction)
         return replace(self, friction=friction, equilibrium=equilibrium, motion_rows=motion_rows, forces=forces)
-
-    def with_wear(self, depth: np.ndarray, softness: np.ndarray | None = None) -> System:
-        """The same system with one more load, the last one: wear. Its unit opens the gap by `depth` (n,).
-
-        Where the wear goes on with the pressure, a pressure N opens the gap at its node by `softness` (n,) times N too.
-        """
-        column = np.concatenate([depth, np.zeros_like(depth)])
-        loads, columns = (np.column_stack([each, column]) for each in (self.loads, self.drive.columns))
-        forces = np.column_stack([self.forces, np.zeros(self.motions)])
-        worn = replace(self, loads=loads, forces=forces, drive=replace(self.drive, columns=columns))
-        if softness is None:
-            return replace(worn, held_as=self.held_as or self)
-        return replace(worn, operator=SoftOperator(self.operator, softness), held_as=None)
 
     def changed(self, problem: Problem) -> System | None:
         """The system of another problem with the same matrices; None if they differ."""

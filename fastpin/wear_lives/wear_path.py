@@ -7,10 +7,12 @@ the mechanics, and every change of status on the way is an event of the path sol
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
+from fastpin.elasticity.operator import Operator
 from fastpin.elasticity.system import System
 from fastpin.model.profile import InitialGap, profile_of_nodes
 from fastpin.solver.configuration import Configuration, work_between
@@ -102,7 +104,7 @@ class WearRun(Run):
         begin, end = np.r_[load, 0.0], np.r_[load, 1.0]
         start = replace(before, load=begin, rest_gap=rest_gap, dissipation=0.0, work=0.0)
         position, piece = Position(start, before.closed.copy()), Piece(0.0, 1.0, begin, end)
-        stepper = PathStepper(self.system.with_wear(depth, softness), self.statistics, self.strict)
+        stepper = PathStepper(system_with_wear(self.system, depth, softness), self.statistics, self.strict)
         while position.now.closed.any() and not np.array_equal(position.now.load, end):
             stepper.advance(position, piece, 1.0, self._check)
         stepper.leave(position)
@@ -124,6 +126,53 @@ class WearRun(Run):
         """Let Ctrl-C end a long path."""
         if self.progress is not None:
             self.progress(float(self.corner), len(self.history))
+
+
+class SoftOperator(Operator):
+    """An operator whose nodes are softer: a pressure also opens the gap at its own node.
+
+    Parameters
+    ----------
+    base : Operator
+    softness : ndarray, shape (n,)
+        Gap per pressure at each node, beside that of `base`.
+    """
+
+    by_distance = False
+
+    def __init__(self, base: Operator, softness: np.ndarray) -> None:
+        super().__init__(base.size)
+        self.is_stored = base.is_stored
+        self._base, self._softness = base, np.concatenate([softness, np.zeros_like(softness)])
+
+    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
+        product: np.ndarray = self._base @ tractions + (self._softness * tractions.T).T
+        return product
+
+    def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        self._base.fill(rows, columns, out)
+        out += np.where(rows[:, None] == columns, self._softness[columns], 0.0)
+
+    def diagonal(self) -> np.ndarray:
+        return self._base.diagonal() + self._softness
+
+    @cached_property
+    def matrix(self) -> np.ndarray | None:  # type: ignore[override]
+        return None if self._base.matrix is None else self.entries()
+
+
+def system_with_wear(system: System, depth: np.ndarray, softness: np.ndarray | None = None) -> System:
+    """The system with one more load, the last one: wear. Its unit opens the gap by `depth` (n,).
+
+    Where the wear goes on with the pressure, a pressure N opens the gap at its node by `softness` (n,) times N too.
+    """
+    column = np.concatenate([depth, np.zeros_like(depth)])
+    loads, columns = (np.column_stack([each, column]) for each in (system.loads, system.drive.columns))
+    forces = np.column_stack([system.forces, np.zeros(system.motions)])
+    worn = replace(system, loads=loads, forces=forces, drive=replace(system.drive, columns=columns))
+    if softness is None:
+        return replace(worn, held_as=system.held_as or system)
+    return replace(worn, operator=SoftOperator(system.operator, softness), held_as=None)
 
 
 def _opened(before: Configuration, depth: np.ndarray) -> Configuration:

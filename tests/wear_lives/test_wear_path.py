@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fastpin import Grid, SolveOptions, solve
-from fastpin.elasticity.operator import DenseOperator, SoftOperator
+from fastpin.elasticity.operator import DenseOperator
 from fastpin.elasticity.system import System
 from fastpin.model import LOADS, Profile
 from fastpin.model.profile_terms import Zone
@@ -14,6 +14,7 @@ from fastpin.solver import first_contact
 from fastpin.solver.configuration import elastic_energy, worst_residual
 from fastpin.solver.increment import implicit_step
 from fastpin.verification.joint_rows import step, wearing
+from fastpin.wear_lives.wear_path import SoftOperator, system_with_wear
 from tests.support.tiers import some_survey
 from tests.support.wear_cases import WEAR_CASES, lived, numbers_of, parts_of, ready_to_wear
 
@@ -185,14 +186,14 @@ def test_softness_is_a_diagonal_of_the_gap_rows():
 def test_wear_is_the_last_load():
     system = System.build(WEAR_CASES["unlike"].problem, Grid.arc(-3.0, -0.1, 31), 1.0)
     depth = np.linspace(0.0, 1.0, 31)
-    worn = system.with_wear(depth)
+    worn = system_with_wear(system, depth)
     load = np.r_[np.zeros(len(LOADS)), 2.0]
     assert np.array_equal(worn.load_displacement(load), np.r_[2.0 * depth, np.zeros(31)])
     assert not worn.load_forces(load).any()
     assert np.array_equal(worn.loads[:, :-1], system.loads)
     assert worn.held_as is system
     assert worn.is_toeplitz
-    assert not system.with_wear(depth, depth).is_toeplitz
+    assert not system_with_wear(system, depth, depth).is_toeplitz
 
 
 def test_a_run_that_wears_recalls_nothing():
