@@ -14,9 +14,10 @@ The remaining operator on (N, T) is symmetric.
 from __future__ import annotations
 
 import math
+from collections import OrderedDict
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -219,6 +220,11 @@ class System:
         """The arrays of the equations for kernels, all in the order of C."""
         matrices = map(np.ascontiguousarray, (self.motion, self.equilibrium, self.motion_rows, self.friction))
         return Equations(*matrices)
+
+    @cached_property
+    def held_tables(self) -> OrderedDict[bytes, Any]:
+        """The latest tables of held contacts, by their closed nodes; see :func:`fastpin.solver.held.known_table`."""
+        return OrderedDict()
 
     @cached_property
     def interfaces(self) -> tuple[Interface, ...]:

@@ -9,9 +9,7 @@ so a step has the same bits whether it finds the table or computes it.
 from __future__ import annotations
 
 import threading
-from collections import OrderedDict
-from typing import ClassVar, NamedTuple
-from weakref import WeakKeyDictionary
+from typing import NamedTuple
 
 import numpy as np
 
@@ -42,36 +40,7 @@ MOST_CONDITION = 1e8
 """Largest condition number of the equations of the motion. A contact above it hardly holds the pin."""
 
 
-class HeldContacts:
-    """The tables of the held contacts of the latest steps on one system. Threads may share them."""
-
-    _of_systems: ClassVar[WeakKeyDictionary[System, HeldContacts]] = WeakKeyDictionary()
-
-    def __init__(self) -> None:
-        self._tables: OrderedDict[bytes, HeldTable | None] = OrderedDict()
-        self._lock = threading.Lock()
-
-    @classmethod
-    def table(cls, system: System, closed: np.ndarray) -> HeldTable | None:
-        """The table of the `closed` nodes (n,) of a system, kept as long as the system is.
-
-        Systems that differ in loads only share their tables. None if steps on the system do not begin with a held
-        contact: on many nodes and without friction; or if the table has too few digits.
-        """
-        if system.grid.size > FEW_NODES or not system.has_friction or system.operator.matrix is None:
-            return None
-        owner, key = system.held_as or system, closed.tobytes()
-        known = cls._of_systems.get(owner) or cls._of_systems.setdefault(owner, cls())
-        with known._lock:
-            if key in known._tables:
-                known._tables.move_to_end(key)
-                return known._tables[key]
-        table = held_table(system, closed)
-        with known._lock:
-            known._tables[key] = table
-            while len(known._tables) > max(1, MOST_NUMBERS // (4 * closed.size * closed.size)):
-                known._tables.popitem(last=False)
-        return table
+_LOCK = threading.Lock()  # threads may share the tables of a system
 
 
 class HeldTable(NamedTuple):
@@ -92,6 +61,27 @@ class HeldTable(NamedTuple):
     matrix: np.ndarray
     stack: np.ndarray
     order: np.ndarray
+
+
+def known_table(system: System, closed: np.ndarray) -> HeldTable | None:
+    """The table of the `closed` nodes (n,) of a system, which keeps it; see :func:`held_table`.
+
+    Systems that differ in loads only share their tables. None if steps on the system do not begin with a held contact:
+    on many nodes and without friction; or if the table has too few digits.
+    """
+    if system.grid.size > FEW_NODES or not system.has_friction or system.operator.matrix is None:
+        return None
+    tables, key = (system.held_as or system).held_tables, closed.tobytes()
+    with _LOCK:
+        if key in tables:
+            tables.move_to_end(key)
+            return tables[key]
+    table = held_table(system, closed)
+    with _LOCK:
+        tables[key] = table
+        while len(tables) > max(1, MOST_NUMBERS // (4 * closed.size * closed.size)):
+            tables.popitem(last=False)
+    return table
 
 
 def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
@@ -264,7 +254,7 @@ class HeldColumns:
                 queue.counts[[QUEUED, NEXT, ROUND]] = 0
             if code != REBUILD or is_stuck:
                 return int(code)
-            table, before = HeldContacts.table(system, contact.status != OPEN), contact.status.copy()
+            table, before = known_table(system, contact.status != OPEN), contact.status.copy()
             if table is None:
                 return int(code)
             queue.counts[[UPDATES, QUEUED, NEXT, ROUND]] = 0

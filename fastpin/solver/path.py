@@ -21,7 +21,7 @@ from fastpin.kernels.arrays import Contact, ContactValues, LoadTerms, Queue
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import P, Q
 from fastpin.solver.configuration import Configuration, Correction, snap_to_bounds, solve_unknowns
-from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts
+from fastpin.solver.held import FEW_NODES, HeldColumns, known_table
 from fastpin.solver.settling import settle
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
@@ -110,13 +110,17 @@ class PathStep:
         self._checked = configuration, self._queue.sums.copy()
         self._columns: Columns | HeldColumns
         self._first_status: np.ndarray | None = None  # while a held contact gets the statuses of the start
-        if not self._begin_held():
-            unknowns = self._sticking_after_reversal()
-            if unknowns is None:
-                self._rebuild()
-            else:
-                now.status[unknowns.normal] = STICK
-                self._begin(unknowns)
+        table = known_table(system, now.closed)
+        if table is not None:  # few nodes: all closed ones are held, and those that go on slipping are let go at once
+            contact, rest_gap = self._contact, now.rest_gap
+            self._columns = HeldColumns(system, table, contact, self.before, self.rate, rest_gap, self._memory)
+            self._all_at_once = n  # one by one takes less time than a new tableau
+            self._first_status = now.status.copy()
+        elif (unknowns := self._sticking_after_reversal()) is not None:
+            now.status[unknowns.normal] = STICK
+            self._begin(unknowns)
+        else:
+            self._rebuild()
 
     @property
     def fraction(self) -> float:
@@ -207,28 +211,13 @@ class PathStep:
         None if the load has not turned, or if the closed nodes are no :class:`StickingRun`.
         """
         status = self.now.status
-        unknowns = self._memory.unknowns.sticking(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
+        unknowns = self._memory.sticking(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
         if unknowns is None:
             return None
         rates = unknowns.rates(self.rate)
         normal, shear = rates[: unknowns.normal.size], rates[unknowns.normal.size : unknowns.count]
         closed = unknowns.normal
         return unknowns if has_turned(status[closed], normal, shear, self.system.friction[closed]) else None
-
-    def _begin_held(self) -> bool:
-        """Begin with all closed nodes held, if there are few nodes. Nodes that go on slipping are let go at once.
-
-        Returns False if the held nodes can't hold the pin, or without friction.
-        """
-        status = self.now.status
-        table = HeldContacts.table(self.system, self.now.closed)
-        if table is None:
-            return False
-        contact, rest_gap = self._contact, self.now.rest_gap
-        self._columns = HeldColumns(self.system, table, contact, self.before, self.rate, rest_gap, self._memory)
-        self._all_at_once = status.size  # one by one takes less time than a new tableau
-        self._first_status = status.copy()
-        return True
 
     def _is_stuck_at_start(self) -> bool:
         """Whether the loop ended before all slipping nodes of a held contact were let go."""
@@ -280,14 +269,14 @@ class PathStep:
         self.rebuilds += 1
         if self.rebuilds > MOST_REBUILDS * (1 + self.resettled):
             raise StepLostError(exchange.CYCLING, self.fraction)
-        unknowns, queue = self._memory.unknowns.solvable(self.system, self.now.status), self._queue
+        unknowns, queue = self._memory.solvable(self.system, self.now.status), self._queue
         if unknowns is None and all_at_once:
             # After the change all at once nothing holds the pin: change one by one instead.
             changed = slice(0, queue.counts[exchange.QUEUED])
             self.now.status[queue.node[changed]] = queue.status[changed]
             self._all_at_once = self.now.status.size
             queue.counts[exchange.NEXT] = queue.counts[exchange.QUEUED] = 0
-            unknowns = self._memory.unknowns.solvable(self.system, self.now.status)
+            unknowns = self._memory.solvable(self.system, self.now.status)
         if unknowns is None:
             raise StepLostError(exchange.NO_SUPPORT, self.fraction)
         self._begin(unknowns)
@@ -377,7 +366,7 @@ class PathStep:
 
     def _exact_solution(self) -> ContactValues | None:
         """The solution of the present statuses, by a factorisation; None if the closed nodes can't hold the pin."""
-        now, unknowns = self.now, self._memory.unknowns.dense(self.system, self.now.status)
+        now, unknowns = self.now, self._memory.dense(self.system, self.now.status)
         return None if unknowns is None else solve_unknowns(self.system, unknowns, now.slip, now.load, now.rest_gap)
 
 
@@ -408,7 +397,7 @@ def follow_whole(system: System, start: Configuration, after: np.ndarray, memory
     same calls, so a step has the same bits either way. The `memory` is overwritten.
     """
     n = start.status.size
-    table = HeldContacts.table(system, start.closed)
+    table = known_table(system, start.closed)
     if table is None:
         return None
     now, rate = start.copy(), after - start.load

@@ -32,9 +32,6 @@ from fastpin.solver.tableau import TableauMemory
 FEW_CLOSED = 8
 """A contact of at most this many nodes, lost during a complete unloading, has just opened."""
 
-MOST_SYSTEMS = 8
-"""Systems with another friction that are kept, with their tables. A history returns to the same few."""
-
 
 class PathStepper:
     """The path solver as a stepper: it follows a step from event to event, exactly.
@@ -130,7 +127,7 @@ class PathStepper:
         """The system with the friction under a load (loads,), kept for the next question."""
         key = load[FRICTION_CHANGE].item(), load[len(LOADS) :].tobytes()  # the last ones are a DriftingSystem's
         if key not in self._systems:
-            if len(self._systems) == MOST_SYSTEMS:
+            if len(self._systems) == 8:  # a history returns to the same few
                 self._systems.clear()
             self._systems[key] = self._system.under(load)
         return self._systems[key]

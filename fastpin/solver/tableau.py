@@ -15,7 +15,7 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
 from fastpin.runtime.products import add_product
 from fastpin.solver.configuration import Configuration, Correction
-from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
+from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 
 ROOM = 2
 """Updates per node for which there is room. With more updates the tableau is rebuilt."""
@@ -27,6 +27,9 @@ WORTHWHILE = 4_000_000
 class TableauMemory:
     """Memory for one tableau, used again step after step. Fresh memory comes page by page, which takes time.
 
+    It keeps the linear systems of the latest statuses, so that the same statuses give the same bits: at most one
+    :class:`StickingRun` and one :class:`DenseUnknowns`; of a system whose operator is not stored, one of the two.
+
     Parameters
     ----------
     system : System
@@ -36,8 +39,6 @@ class TableauMemory:
     ----------
     matrix : ndarray, shape (2n+m, 2n)
     left : ndarray, shape (2n+m, updates)
-    unknowns : LatestUnknowns
-        The linear systems of the latest statuses.
     held : Tableau or None
         The arrays of a tableau that begins with a held contact; None before the first one.
     """
@@ -48,7 +49,35 @@ class TableauMemory:
         rows, columns = len(system.motion) + system.motions, len(system.motion)
         self.matrix = np.empty((rows, columns), order="F")  # columns that are never needed take no memory
         self.left = np.empty((rows, ROOM * system.grid.size + CHUNK), order="F")
-        self.unknowns = LatestUnknowns()
+        self._sticking: tuple[tuple[System, bytes] | None, StickingRun | None] = None, None
+        self._dense: tuple[tuple[System, bytes] | None, DenseUnknowns | None] = None, None
+
+    def sticking(self, system: System, status: np.ndarray) -> StickingRun | None:
+        """The unknowns of given statuses by a fast inverse, see :meth:`StickingRun.of`."""
+        if not StickingRun.is_for(system, status):  # the kept one stays
+            return None
+        key = system, status.tobytes()
+        if self._sticking[0] != key:  # the old one goes before a new one is made: there is memory for one
+            self._sticking = None, None
+            if not system.operator.is_stored:
+                self._dense = None, None
+            self._sticking = key, StickingRun.of(system, status)
+        return self._sticking[1]
+
+    def dense(self, system: System, status: np.ndarray) -> DenseUnknowns | None:
+        """The unknowns of given statuses by a factorisation; None if the nodes can't hold the pin."""
+        key = system, status.tobytes()
+        if self._dense[0] != key:
+            self._dense = None, None
+            if not system.operator.is_stored:
+                self._sticking = None, None
+            self._dense = key, DenseUnknowns(system, status)
+        found = self._dense[1]
+        return None if found is None or found.singular else found
+
+    def solvable(self, system: System, status: np.ndarray) -> StickingRun | DenseUnknowns | None:
+        """The unknowns of given statuses by the faster of both ways; None if the nodes can't hold the pin."""
+        return self.sticking(system, status) or self.dense(system, status)
 
 
 class Columns:

@@ -23,7 +23,7 @@ from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
 from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.tableau import Columns, TableauMemory
-from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
+from fastpin.solver.unknowns import DenseUnknowns
 from tests.support import processes
 from tests.support.kernels import in_python, python
 from tests.support.steps import as_with_many_nodes
@@ -181,7 +181,8 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
     rate, typical = loads(P=1.0, Q=0.3), float(np.median(np.diagonal(system.operator)))
     for node, new in ((20, 1), (20, -1), (13, 0), (30, -1), (30, 1), (12, OPEN)):
         contact = at_rest_on(system, zones())
-        basis, memory = LatestUnknowns().solvable(system, contact.status), TableauMemory(system)
+        memory = TableauMemory(system)
+        basis = memory.solvable(system, contact.status)
         columns = Columns(system, basis, contact, rate, memory)
         if (contact.tie[node] == new) != tied and new in (1, -1):
             continue
@@ -190,7 +191,9 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
         assert size > 1e-3
         assert contact.status[node] == new
         other = at_rest_on(system, contact.status)
-        expected = Columns(system, LatestUnknowns().solvable(system, other.status), other, rate, TableauMemory(system))
+        expected = Columns(
+            system, TableauMemory(system).solvable(system, other.status), other, rate, TableauMemory(system)
+        )
         found = untied(dense(matrix, tableau, updates), contact, 0.4)
         wanted = untied(whole(expected), other, 0.4)
         assert np.abs(found - wanted).max() < 1e-9 * np.abs(wanted).max()
@@ -224,7 +227,7 @@ def test_columns_by_chunks_are_those_one_by_one(system, sets, monkeypatch):
         status[status != OPEN] = STICK
     contact = at_rest_on(system, status)
     columns = Columns(
-        system, LatestUnknowns().solvable(system, status), contact, loads(P=1.0, Q=0.3), TableauMemory(system)
+        system, TableauMemory(system).solvable(system, status), contact, loads(P=1.0, Q=0.3), TableauMemory(system)
     )
     matrix, tableau, updates = whole(columns), columns.tableau, 0
     change, fetch = compiled_kernel("_change_status"), compiled_kernel("_column")

@@ -16,7 +16,7 @@ from fastpin.model import LOADS
 from fastpin.solver import held
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import solve_statuses
-from fastpin.solver.held import HeldColumns, HeldContacts, held_table
+from fastpin.solver.held import HeldColumns, held_table, known_table
 from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns
@@ -177,7 +177,7 @@ def test_corrections_of_a_held_contact_are_those_of_whole_arrays(titanium_in_alu
 def test_nodes_that_hardly_hold_the_pin_have_no_table(titanium_in_aluminium):
     system = system_of(titanium_in_aluminium)
     assert held_table(system, zones()) is None
-    assert HeldContacts.table(system, zones((30, 31))) is None  # one node: the pin turns about it
+    assert known_table(system, zones((30, 31))) is None  # one node: the pin turns about it
 
 
 def test_nodes_that_leave_a_motion_free_have_no_table(titanium_in_aluminium):

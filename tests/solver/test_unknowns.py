@@ -12,7 +12,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver import path, unknowns
 from fastpin.solver.tableau import TableauMemory
-from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
+from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 from tests.support.steps import as_with_many_nodes
 
 BOTTOM = -0.5 * np.pi
@@ -33,7 +33,7 @@ def zones(*stuck: int) -> np.ndarray:
 
 def test_the_same_statuses_have_the_same_unknowns(system, monkeypatch):
     monkeypatch.setattr(unknowns, "LEAST_NEIGHBOURS", 2)
-    latest = LatestUnknowns()
+    latest = TableauMemory(system)
     first = latest.solvable(system, zones(15, 25))
     assert isinstance(first, DenseUnknowns)
     run = latest.solvable(system, zones(12, 30))
