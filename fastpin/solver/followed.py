@@ -65,7 +65,7 @@ def follow_friction(run: AnyRun, problem: Problem) -> AnyRun:
     position, piece = Position(replace(before, load=begin), before.closed.copy()), Piece(0.0, 1.0, begin, end)
     try:
         while position.now.closed.any() and not np.array_equal(position.now.load, end):
-            stepper.advance(position, piece, 1.0, lambda reached: run.report(run.corner, reached))
+            stepper.advance(position, piece, 1.0, run.report)
     except SolveError as error:
         error.step, error.fraction, error.load = run.corner, position.reached, named_load(run.load)
         error.args = (f"at {100.0 * error.fraction:.4g} % of the change of the friction: {error}",)

@@ -272,7 +272,7 @@ class Run:
         self.corner_log.begin_step()
         try:
             for piece in pieces(before, target, self.system.is_nearly_neat):
-                self._follow_piece(piece, step)
+                self._follow_piece(piece)
             if not inside and self.recorder is not None:
                 check_resolution(self.system, position.now)
             if self._outside is not None and self._outside.is_closed(self.system, position.now):
@@ -298,7 +298,7 @@ class Run:
             raise
         return known
 
-    def _follow_piece(self, piece: Piece, step: int) -> None:
+    def _follow_piece(self, piece: Piece) -> None:
         """Follow one straight piece of a step, from stop to stop."""
         position, pin = self.position, self.system.interfaces[0].nodes
         self.stepper.begin_piece()
@@ -312,7 +312,7 @@ class Run:
             aim = piece.load_at(until) if vanishes else load
             while (position.now.load != aim).any():
                 if position.now.closed[pin].any():
-                    self.stepper.advance(position, piece, until, lambda reached: self.report(step, reached))
+                    self.stepper.advance(position, piece, until, self.report)
                 else:
                     self._touch_down(aim, until)
                 check_bond(self.system, position.now)
@@ -321,8 +321,8 @@ class Run:
                 self._release(load)
             self._release_if_unloaded(piece, load)
             if stop in kept and stop < 1.0 and self.recorder is not None:
-                self._keep(step, stop)
-            self.report(step, stop)
+                self._keep(self.corner, stop)
+            self.report(stop)
         self.stepper.leave(position)
 
     def _touch_down(self, load: np.ndarray, stop: float) -> None:
@@ -395,10 +395,10 @@ class Run:
         if self.progress is not None:
             self.progress(float(self.corner), len(self.history))
 
-    def report(self, step: int, reached: float) -> None:
-        """Report the fraction `reached` of a step as progress of the history."""
+    def report(self, reached: float) -> None:
+        """Report the fraction `reached` of the step after the last corner as progress of the history."""
         if self.progress is not None:
-            self.progress(step + reached, len(self.history))
+            self.progress(self.corner + reached, len(self.history))
 
     def _repeat(self, length: int, since: int) -> None:
         """Take the next corners from the log while their loads repeat the period that ends here.

@@ -121,7 +121,7 @@ def pushes(problem: Problem, values: np.ndarray) -> np.ndarray:
 
 @dataclass(eq=False)
 class Position:
-    """The position of a run inside a step.
+    """The position of a run inside a step, which a stepper moves. Steppers also work without a run, as on a window.
 
     Attributes
     ----------
