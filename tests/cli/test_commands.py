@@ -30,6 +30,7 @@ from tests.support.processes import finished, python
 from tests.support.samples import sample_result
 from tests.support.tiers import some_gate
 
+CASE = EXAMPLE
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -49,13 +50,6 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 
     monkeypatch.setattr(solver, "solve", solve)
     return calls
-
-
-@pytest.fixture
-def case() -> Path:
-    path = Path("case.toml")
-    path.write_text(EXAMPLE)
-    return path
 
 
 def test_example_prints_a_case_file() -> None:

@@ -16,17 +16,12 @@ from tests.support.commands import printed, refusal, said
 from tests.support.outcomes import FILE
 from tests.support.studies import small_problem, small_study
 
+CASE = EXAMPLE
+
 
 @pytest.fixture(scope="module")
 def study(similar: MaterialPair) -> Convergence:
     return small_study(small_problem(similar))
-
-
-@pytest.fixture
-def case() -> Path:
-    path = Path("case.toml")
-    path.write_text(EXAMPLE)
-    return path
 
 
 OUTPUTS = ["--csv", "a.csv", "--json", "a.json", "--plot", "a.png"]

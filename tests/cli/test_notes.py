@@ -15,13 +15,6 @@ from tests.support.processes import python, started
 CASE = HEAD.replace("friction = 0.3", "friction = 0.4") + "[[load]]\nQ = [1e5, -1e5]\n[solve]\nnodes = 61\n"
 
 
-@pytest.fixture
-def case():
-    path = Path("case.toml")
-    path.write_text(CASE)
-    return path
-
-
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_show_says_that_a_run_is_unfinished(case):

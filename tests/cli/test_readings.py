@@ -30,13 +30,6 @@ WORDS = "peak_hoop: can't be read: ValueError: no such luck"
 
 
 @pytest.fixture
-def case() -> Path:
-    path = Path("case.toml")
-    path.write_text(CASE)
-    return path
-
-
-@pytest.fixture
 def broken(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(state: object) -> float:
         raise ValueError("no such luck")

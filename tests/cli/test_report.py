@@ -4,10 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.pages.content import Album, Picture
 from tests.support.commands import printed, refusal, refused, said
 from tests.support.html import Page
 from tests.support.samples import JOINT
+
+pytestmark = pytest.mark.usefixtures("undrawn")
 
 CASE = f"""title = "A joint"
 {JOINT}
@@ -16,14 +17,6 @@ P = [1e6, 1.2e6]
 [solve]
 nodes = 121
 """
-
-
-@pytest.fixture
-def case(monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A case file in the working directory. Pages have captions in place of figures, which take long."""
-    monkeypatch.setattr(Album, "picture", lambda self, draw, words, caption, bitmap=False: Picture("", caption, 1))
-    Path("case.toml").write_text(CASE)
-    return Path("case.toml")
 
 
 def words(path: str) -> str:

@@ -14,6 +14,8 @@ from tests.support.commands import printed, said
 
 jsonschema = pytest.importorskip("jsonschema")
 
+pytestmark = pytest.mark.usefixtures("case")
+
 CASE = f"""{STEEL_IN_LAMINATE}[[load]]
 P = [2e3, 1e3, 0]
 [solve]
@@ -24,11 +26,6 @@ distance = 0.5e-3
 failure = true
 """
 HEAD = "strength ratio {:.4g} by tsai-wu 500 um from the edge, the least of 3 kept states, at load point 1; at "
-
-
-@pytest.fixture(autouse=True)
-def _case():
-    Path("case.toml").write_text(CASE)
 
 
 @pytest.mark.gate

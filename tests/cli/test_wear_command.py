@@ -16,6 +16,8 @@ from fastpin.report import json_schema
 from tests.support.commands import printed, refused, said
 from tests.support.live_pages import recorded
 
+pytestmark = pytest.mark.usefixtures("case")
+
 CASE = """
 title = "Worn pin"
 [pin]
@@ -41,11 +43,6 @@ tolerance = 0
 nodes = 31
 arc = [-3.1, 0.0]
 """
-
-
-@pytest.fixture(autouse=True)
-def _case() -> None:
-    Path("case.toml").write_text(CASE)
 
 
 def test_the_command_prints_the_chosen_cycles():
