@@ -12,7 +12,7 @@ from fastpin.model import Laminate
 from fastpin.model.angles import angle_at
 from fastpin.model.keys import kind_of
 from fastpin.report.sweep import text as sweep_text
-from fastpin.studies import parse_plan, parse_tolerances
+from fastpin.studies import parse_tolerances
 from fastpin.studies.identity import canonical, canonical_json, run_id
 from fastpin.studies.plan import Plan
 from fastpin.studies.variation import field_words
@@ -20,14 +20,10 @@ from tests.support.bodies import soft_plate
 from tests.support.body_texts import HEAD as CASE
 from tests.support.case_texts import PRESSED
 from tests.support.faults import fault_of
+from tests.support.plans import planned
 
 RING = CASE + '[plate_body]\nkind = "ring"\nouter_radius = 2e-2\nsupport = "half"\n'
 BUSH = CASE + '[plate_body]\nmaterial = "steel"\nouter_radius = 12e-3\nring_outer_radius = 2e-2\nsupport = "half"\n'
-
-
-def planned(folder: Path, base: str, text: str) -> Plan:
-    (folder / "case.toml").write_text(base)
-    return parse_plan(f'case = "case.toml"\n{text}', folder=folder)
 
 
 def problems(folder: Path, base: str, text: str) -> list[Problem]:

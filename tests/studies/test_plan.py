@@ -15,6 +15,8 @@ from fastpin.studies import parse_plan, plan, read_plan
 from fastpin.studies.identity import canonical, run_id
 from tests.support.bodies import soft_plate
 from tests.support.body_texts import HEAD
+from tests.support.faults import fault_of
+from tests.support.plans import planned
 from tests.support.processes import finished, python
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -151,8 +153,7 @@ def test_a_file_that_changes_after_the_plan_was_read_is_not_run(name: str, gone:
     file = tmp_path / file_name
     for each in (file, tmp_path / "b.csv"):
         each.write_text(before)
-    (tmp_path / "case.toml").write_text(case)
-    plan = parse_plan(f'case = "case.toml"\n[grid]\n{axis}\n', folder=tmp_path)
+    plan = planned(tmp_path, case, f"[grid]\n{axis}\n")
     assert plan.case(plan.points[-1])
     if gone:
         file.unlink()
@@ -182,15 +183,12 @@ def test_one_way_to_give_a_material_replaces_the_others(fields, pin, plate):
 
 
 def test_dundurs_parameters_replace_two_materials_and_the_other_way_round(tmp_path: Path) -> None:
-    (tmp_path / "case.toml").write_text(DIMENSIONLESS)
-    plan = parse_plan('case = "case.toml"\n[[list]]\ndundurs = {alpha = 0.2, beta = 0.1, nu_pin = 0.3}\n', "", tmp_path)
+    plan = planned(tmp_path, DIMENSIONLESS, "[[list]]\ndundurs = {alpha = 0.2, beta = 0.1, nu_pin = 0.3}\n")
     assert plan.case(plan.points[0]).problem.pair.dundurs() == pytest.approx((0.2, 0.1))
     dundurs = DIMENSIONLESS.replace(
         '[pin]\nmaterial = "steel"\n[plate]\nmaterial = "aluminium"', "[dundurs]\nalpha = 9"
     )
-    (tmp_path / "case.toml").write_text(dundurs)
-    text = 'case = "case.toml"\n[[list]]\npin.material = "steel"\nplate.material = "nickel alloy"\n'
-    plan = parse_plan(text, "", tmp_path)
+    plan = planned(tmp_path, dundurs, '[[list]]\npin.material = "steel"\nplate.material = "nickel alloy"\n')
     assert plan.case(plan.points[0]).problem.pair.plate.name == "nickel alloy"
 
 
@@ -233,9 +231,8 @@ def test_a_run_is_the_same_case_alone_and_among_others(tmp_path: Path) -> None:
     [[load]]
     Q = 1e5
     """
-    (tmp_path / "case.toml").write_text(case)
     (tmp_path / "mine.toml").write_text("[mine]\nE = 1e11\nnu = 0.3\n")
-    whole = parse_plan(f'case = "case.toml"{SHARED}', folder=tmp_path)
+    whole = planned(tmp_path, case, SHARED)
     assert (len(whole.points), len(whole.runs)) == (192, 96)
     for point in whole.points[::7]:
         rows = "\n".join(f"{name} = {as_toml(value)}" for name, value in point.values.items())
@@ -269,9 +266,8 @@ def test_the_id_depends_on_the_input_and_on_nothing_else() -> None:
 
 def test_parts_of_blocks_are_varied(tmp_path: Path) -> None:
     harmonic = "[[load]]\nmean = { P = 1e6 }\namplitude = { Q = 1e5, sxx = 1e6 }\nrepeat = 3\n[history]\nrepeat = 2\n"
-    (tmp_path / "case.toml").write_text(EXAMPLE + harmonic)
-    text = 'case = "case.toml"\n[grid]\nload.3.amplitude.Q = [1e5, 2e5]\nload.3.phase = { sxx = [0, 90] }\n'
-    plan = parse_plan(text + "history.repeat = [2, 5]\nload.3.repeat = [4]\n", folder=tmp_path)
+    text = "[grid]\nload.3.amplitude.Q = [1e5, 2e5]\nload.3.phase = { sxx = [0, 90] }\n"
+    plan = planned(tmp_path, EXAMPLE + harmonic, text + "history.repeat = [2, 5]\nload.3.repeat = [4]\n")
     assert len(plan.points) == len(plan.runs) == 8
     for point in plan.points:
         history = plan.case(point).history
@@ -463,10 +459,9 @@ def test_single_faults(text: str, words: str, tmp_path: Path) -> None:
 
 
 def test_units_of_the_loads_stay_those_of_the_case(tmp_path: Path) -> None:
-    (tmp_path / "case.toml").write_text(DIMENSIONLESS)
-    (found,) = faults('case = "case.toml"\n[grid]\ncontact.clearance = [1e-5]\n', tmp_path)
+    _, found = fault_of(planned, tmp_path, DIMENSIONLESS, "[grid]\ncontact.clearance = [1e-5]\n")
     assert "vary contact.load_parameter, or take a base case with hole_radius" in found
-    plan = parse_plan('case = "case.toml"\n[grid]\ncontact.load_parameter = [0.2, 0.5]\n', "", tmp_path)
+    plan = planned(tmp_path, DIMENSIONLESS, "[grid]\ncontact.load_parameter = [0.2, 0.5]\n")
     assert [plan.case(point).problem.clearance for point in plan.points] == [0.2, 0.5]
 
 

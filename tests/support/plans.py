@@ -10,6 +10,7 @@ import numpy as np
 import fastpin
 from fastpin.states.state import State
 from fastpin.storage import store
+from fastpin.studies import parse_plan
 from fastpin.studies.plan import Plan
 from fastpin.studies.run_end import KEY_FIGURES
 from scripts.inline import Inline
@@ -40,6 +41,12 @@ MAP = """
 [[list]]
 "pin.E" = 1e11
 """
+
+
+def planned(folder: Path, case: str, text: str) -> Plan:
+    """The plan of a text that lies in a folder, beside its base case."""
+    (folder / "case.toml").write_text(case, encoding="utf-8")
+    return parse_plan(f'case = "case.toml"\n{text}', folder=folder)
 
 
 def run_here(_: object, tasks: Iterable[Any], submit: Callable[..., Any], size: object) -> Iterator[Any]:

@@ -21,10 +21,10 @@ from fastpin.report.summary import document
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.solving import solve
 from fastpin.studies.identity import canonical
-from fastpin.studies.plan import parse_plan
 from tests.support.checks.integral_equations import residuals_away
 from tests.support.checks.sliding import solve_sliding
 from tests.support.once import solve_once
+from tests.support.plans import planned
 from tests.support.programs import difference
 from tests.support.refusals import refused
 from tests.support.samples import JOINT
@@ -395,9 +395,8 @@ def test_faults_of_case_files(text, words):
 
 
 def test_a_plan_varies_drive_and_gauge(tmp_path):
-    (tmp_path / "case.toml").write_text(CASE.replace('csv = "rig.csv"', "P = 1e6"))
-    text = 'case = "case.toml"\n[grid]\ncontact.gauge_radius = [1e-2, 2e-2]\nload.2.ux = [1e-6, 2e-6]\n'
-    plan = parse_plan(text, folder=tmp_path)
+    text = "[grid]\ncontact.gauge_radius = [1e-2, 2e-2]\nload.2.ux = [1e-6, 2e-6]\n"
+    plan = planned(tmp_path, CASE.replace('csv = "rig.csv"', "P = 1e6"), text)
     cases = [plan.case(point) for point in plan.points]
     assert len({json.dumps(canonical(case)) for case in cases}) == 4
     assert cases[0].problem.gauge_radius == 1e-2

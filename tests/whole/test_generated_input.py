@@ -23,6 +23,7 @@ from fastpin.storage import stored_case
 from fastpin.studies import parse_plan
 from tests.support import strategies
 from tests.support.faults import faults_of
+from tests.support.plans import planned
 from tests.support.strategies import Tables, as_toml, tables_of, text_of
 
 pytestmark = pytest.mark.gate
@@ -119,8 +120,7 @@ def test_a_plan_makes_the_case_that_its_file_would_make(case, friction, tmp_path
     folder = tmp_path_factory.mktemp("plan")
     tables = tables_of(case)
     tables["solve"]["error_bars"] = False  # sweeps refuse them
-    (folder / "case.toml").write_text(text_of(case, tables), encoding="utf-8")
-    plan = parse_plan(f'case = "case.toml"\n[grid]\n"contact.friction" = [{as_toml(friction)}]\n', folder=folder)
+    plan = planned(folder, text_of(case, tables), f'[grid]\n"contact.friction" = [{as_toml(friction)}]\n')
     tables["contact"] |= {"friction": friction}
     assert_same_case(plan.case(plan.points[0]), parse_case(text_of(case, tables)))
 

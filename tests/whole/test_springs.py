@@ -11,10 +11,10 @@ from fastpin import Case, CaseFileError, InputError, Problem, solve
 from fastpin.casefile import EXAMPLE, case_text, parse_case
 from fastpin.report import describe, state_table
 from fastpin.report.summary import document
-from fastpin.studies import parse_plan
 from fastpin.studies.identity import canonical
 from tests.support.case_texts import IN_A_RIG
 from tests.support.checks.sliding import solve_sliding
+from tests.support.plans import planned
 from tests.support.programs import difference
 from tests.support.tiers import gate
 
@@ -141,8 +141,7 @@ def test_a_case_file_without_the_stiffness():
 
 
 def test_a_plan_varies_the_stiffness(tmp_path):
-    (tmp_path / "case.toml").write_text(CASE)
-    plan = parse_plan('case = "case.toml"\n[grid]\ncontact.hub_stiffness = [1e4, 1e6]\n', folder=tmp_path)
+    plan = planned(tmp_path, CASE, "[grid]\ncontact.hub_stiffness = [1e4, 1e6]\n")
     cases = [plan.case(point) for point in plan.points]
     assert [case.problem.hub_stiffness for case in cases] == [1e4, 1e6]
     assert len({json.dumps(canonical(case)) for case in cases}) == 2
