@@ -9,26 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from fastpin.joints.system import PinsSystem
 from fastpin.kernels import exchange
 from fastpin.kernels.status import OPEN
-from fastpin.solver.configuration import (
-    MAX_RESIDUAL,
-    Configuration,
-    add_dissipation,
-    resting_status,
-    slip_tally_between,
-    worst_residual,
-)
+from fastpin.solver.configuration import Configuration, resting_status
 from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, SolveError
-from fastpin.solver.increment import implicit_step
+from fastpin.solver.increment import accepted, implicit_step
 from fastpin.solver.path import PathStep, StepLostError
-from fastpin.solver.settling import FiniteStep
 from fastpin.solver.slip_tally import SlipTally
-from fastpin.solver.snap import MOST_STEPS, SOFTER, STIFFER, STIFFEST
+from fastpin.solver.snap import creep, finite_step
 from fastpin.solver.tableau import TableauMemory
 
 JUMPS = (1e-6, 1e-4, 1e-3, 1e-2)
@@ -110,9 +103,8 @@ def _first_of_neat(system: PinsSystem, start: Configuration, load: np.ndarray) -
     begun = replace(start, status=np.where(neat, resting_status(system), OPEN).astype(np.int8))
     for part in (1.0, 1e-1, 1e-2, 1e-3, 1e-4) if neat.all() else (1e-4, 1e-5, 1e-6):
         found = implicit_step(system, begun, start.load + part * (load - start.load))
-        accepted = None if found is None else _accepted(system, start, found)
-        if accepted is not None:
-            return accepted, part
+        if (after := accepted(system, start, found)) is not None:
+            return after, part
     return start, 0.0
 
 
@@ -123,32 +115,13 @@ def _beyond(
 
     Lemke's method takes most of the time, so it comes last.
     """
-    for way in (_settled, _released, _creep):
+    for way in (partial(finite_step, by_lemke=False), _released, partial(creep, on_springs=_on_springs)):
         for jump in JUMPS:
             reached = min(done + jump, 1.0)
             found = way(system.resting(now.rest), now, before + reached * (after - before))
             if found is not None:
                 return found, reached
     return None
-
-
-def _settled(
-    system: PinsSystem, start: Configuration, load: np.ndarray, by_lemke: bool = False
-) -> Configuration | None:
-    """A finite step to `load`, with its dissipation: an increment, or by Lemke's method if that fails."""
-    after = implicit_step(system, start, load, patient=False)
-    if by_lemke and (after is None or worst_residual(system, after) > MAX_RESIDUAL):
-        after = FiniteStep(system, start).to(load)
-    return None if after is None else _accepted(system, start, after)
-
-
-def _accepted(system: PinsSystem, start: Configuration, after: Configuration) -> Configuration | None:
-    """A configuration with the dissipation and slip since `start`; None if it violates the contact conditions."""
-    if not worst_residual(system, after) <= MAX_RESIDUAL:
-        return None
-    add_dissipation(system, start, after)
-    after.slip_tally = slip_tally_between(start, after)
-    return after
 
 
 def _released(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
@@ -163,26 +136,7 @@ def _released(system: PinsSystem, start: Configuration, load: np.ndarray) -> Con
         rest[own], loose.status[nodes] = start.motion[own], OPEN
         loose.pressure[nodes] = loose.shear[nodes] = 0.0
     held, loose = system.resting(rest), replace(loose, rest=rest)
-    found = implicit_step(held, loose, load)
-    return None if found is None else _accepted(held, loose, found)
-
-
-def _creep(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
-    """Let the pins creep to a state at `load`, on springs that are slack at the start of each step and get softer."""
-    first = stiffness = float(system.weights.mean() / np.median(np.abs(system.operator.diagonal())))
-    last = start
-    for _ in range(MOST_STEPS):
-        if stiffness > STIFFEST * first:
-            return None
-        crept = _on_springs(system, last, load, stiffness)
-        if crept is None:
-            stiffness *= STIFFER
-            continue
-        last, stiffness = crept, stiffness * SOFTER
-        beyond = _settled(system, last, load, by_lemke=True)
-        if beyond is not None:
-            return beyond
-    return None
+    return accepted(held, loose, implicit_step(held, loose, load))
 
 
 def _on_springs(system: PinsSystem, start: Configuration, load: np.ndarray, stiffness: float) -> Configuration | None:
@@ -194,5 +148,5 @@ def _on_springs(system: PinsSystem, start: Configuration, load: np.ndarray, stif
         system, motion_rows=system.motion_rows + np.diag(springs), forces=forces, loads=columns,
         drive=replace(system.drive, columns=columns), held_as=None,
     )  # fmt: skip
-    after = _settled(held, replace(start, load=np.r_[start.load, 0.0]), np.r_[load, 1.0], by_lemke=True)
+    after = finite_step(held, replace(start, load=np.r_[start.load, 0.0]), np.r_[load, 1.0])
     return None if after is None else replace(after, load=load.copy())

@@ -18,11 +18,17 @@ from fastpin.kernels import conditions
 from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
     Configuration,
     accept_solution,
+    add_dissipation,
+    reaches_end,
     resting_status,
+    slip_tally_between,
     solve_statuses,
+    worst_residual,
 )
+from fastpin.solver.errors import CUT_OFF, ArcError
 
 
 def implicit_step(system: System, start: Configuration, load: np.ndarray, patient: bool = True) -> Configuration | None:
@@ -51,6 +57,17 @@ def implicit_step(system: System, start: Configuration, load: np.ndarray, patien
             if found is not None:
                 return found
     return None
+
+
+def accepted(system: System, start: Configuration, after: Configuration | None) -> Configuration | None:
+    """A configuration with the dissipation and the slip since `start`; None if it violates the contact conditions."""
+    if after is None or not worst_residual(system, after) <= MAX_RESIDUAL:
+        return None
+    if reaches_end(system, after):
+        raise ArcError(CUT_OFF)
+    add_dissipation(system, start, after)
+    after.slip_tally = slip_tally_between(start, after)
+    return after
 
 
 def _iterate(

@@ -5,18 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.solver.configuration import (
-    MAX_RESIDUAL,
-    Configuration,
-    add_dissipation,
-    reaches_end,
-    slip_tally_between,
-    work_between,
-    worst_residual,
-)
+from fastpin.solver.configuration import Configuration, work_between
 from fastpin.solver.driven import can_float
-from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError
-from fastpin.solver.increment import implicit_step
+from fastpin.solver.errors import ConvergenceError
+from fastpin.solver.increment import accepted, implicit_step
 from fastpin.solver.rest import release
 from fastpin.solver.step import Piece, Position, StepReport
 
@@ -86,8 +78,8 @@ class IncrementStepper:
         A complete unloading that has no solution releases the pin.
         """
         system = self._system.under(load)
-        found = implicit_step(system, start, load)
-        if found is None or worst_residual(system, found) > MAX_RESIDUAL:
+        found = accepted(system, start, implicit_step(system, start, load))
+        if found is None:
             if can_float(system, load):  # unloaded completely
                 position.now = release(system, start, load)
                 return
@@ -100,11 +92,7 @@ class IncrementStepper:
             if not self._may_touch_again(position):
                 self._increment(position, position.now, load, halvings - 1)
             return
-        if reaches_end(system, found):
-            raise ArcError(CUT_OFF)
         found.work = start.work + work_between(system, start, found)
-        add_dissipation(system, start, found)
-        found.slip_tally = slip_tally_between(start, found)
         position.now = found
         position.touched |= found.closed
         self._statistics["increments"] += 1

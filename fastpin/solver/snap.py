@@ -8,23 +8,15 @@ springs. Slip and dissipation follow the way of the pin.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.solver.configuration import (
-    MAX_RESIDUAL,
-    SLIGHT,
-    Configuration,
-    add_dissipation,
-    reaches_end,
-    slip_tally_between,
-    work_between,
-    worst_residual,
-)
-from fastpin.solver.errors import CUT_OFF, UNHELD, ArcError, NoEquilibriumError
-from fastpin.solver.increment import implicit_step
+from fastpin.solver.configuration import MAX_RESIDUAL, SLIGHT, Configuration, work_between, worst_residual
+from fastpin.solver.errors import UNHELD, NoEquilibriumError
+from fastpin.solver.increment import accepted, implicit_step
 from fastpin.solver.settling import FiniteStep
 
 MOST_STEPS = 100
@@ -60,25 +52,36 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
     NoEquilibriumError
         If the pin spins.
     """
-    free = ~system.motion_rows.any(axis=1)  # directions in which nothing holds the pin
+    beyond = finite_step(system, now, load)
+    if beyond is None and not system.motion_rows.any(axis=1).all():
+        beyond = creep(system, now, load, _on_springs)
+    if beyond is not None:
+        beyond.work = now.work + work_between(system, now, beyond)
+    return beyond
+
+
+def creep(
+    system: System, start: Configuration, load: np.ndarray, on_springs: Callable[..., Configuration | None]
+) -> Configuration | None:
+    """Creep from `start` to a state at `load` without springs; None if there is none.
+
+    ``on_springs(system, start, load, stiffness)`` makes one step of the creep.
+    """
     first = stiffness = float(system.weights.mean() / np.median(np.abs(system.operator.diagonal())))
-    last, beyond, steps = now, _step(system, now, load), 0
-    while beyond is None:
-        if not free.any() or steps == MOST_STEPS or stiffness > STIFFEST * first:
+    for _ in range(MOST_STEPS):
+        if stiffness > STIFFEST * first:
             return None
-        steps += 1
-        crept = _step_on_springs(system, last, load, np.where(free, stiffness, 0.0))
-        if crept is None:
+        after = on_springs(system, start, load, stiffness)
+        if after is None:
             stiffness *= STIFFER
             continue
-        if _spins(system, last, crept):
-            raise NoEquilibriumError(UNHELD)
-        last, stiffness = crept, stiffness * SOFTER
-        beyond = _step(system, last, load)
-        if beyond is None and worst_residual(system, last) <= MAX_RESIDUAL:
-            beyond = last
-    beyond.work = now.work + work_between(system, now, beyond)
-    return beyond
+        start, stiffness = after, stiffness * SOFTER
+        beyond = finite_step(system, start, load)
+        if beyond is None and worst_residual(system, start) <= MAX_RESIDUAL:
+            return start
+        if beyond is not None:
+            return beyond
+    return None
 
 
 def _spins(system: System, before: Configuration, after: Configuration) -> bool:
@@ -97,28 +100,21 @@ def _spins(system: System, before: Configuration, after: Configuration) -> bool:
     return False
 
 
-def _step(system: System, start: Configuration, load: np.ndarray) -> Configuration | None:
+def finite_step(system: System, start: Configuration, load: np.ndarray, by_lemke: bool = True) -> Configuration | None:
     """A finite step to `load`, with its dissipation: an increment, or by Lemke's method where that fails."""
-    for by_lemke in (False, True):
-        after = FiniteStep(system, start).to(load) if by_lemke else implicit_step(system, start, load, patient=False)
-        if after is not None and worst_residual(system, after) <= MAX_RESIDUAL:
-            if reaches_end(system, after):
-                raise ArcError(CUT_OFF)
-            add_dissipation(system, start, after)
-            after.slip_tally = slip_tally_between(start, after)
-            return after
-    return None
+    after = accepted(system, start, implicit_step(system, start, load, patient=False))
+    if after is None and by_lemke:
+        after = accepted(system, start, FiniteStep(system, start).to(load))
+    return after
 
 
-def _step_on_springs(
-    system: System, start: Configuration, load: np.ndarray, stiffness: np.ndarray
-) -> Configuration | None:
-    """A finite step of the pin on springs of a `stiffness` (3,), which are slack at `start`.
+def _on_springs(system: System, start: Configuration, load: np.ndarray, stiffness: float) -> Configuration | None:
+    """A finite step of the pin on springs that are slack at `start`, in the directions in which nothing holds it.
 
     The motion in the directions of the springs counts from `start` during the step.
     """
-    n = system.grid.size
-    before = np.where(stiffness > 0.0, start.motion, 0.0)
+    n, free = system.grid.size, ~system.motion_rows.any(axis=1)
+    before = np.where(free, start.motion, 0.0)
     moved = system.motion @ before
     shifted = start.changed(
         motion=start.motion - before,
@@ -126,9 +122,12 @@ def _step_on_springs(
         slip=start.slip - moved[n:],
         rest_slip=start.rest_slip - moved[n:],
     )
-    held = replace(system, motion_rows=system.motion_rows + np.diag(stiffness))
-    after = _step(held, shifted, load)
+    held = replace(system, motion_rows=system.motion_rows + np.diag(free * stiffness))
+    after = finite_step(held, shifted, load)
     if after is None:
         return None
     after = after.changed(rest_gap=start.rest_gap, rest_slip=start.rest_slip)
-    return after.changed(motion=after.motion + before, slip=after.slip + moved[n:])
+    after = after.changed(motion=after.motion + before, slip=after.slip + moved[n:])
+    if _spins(system, start, after):
+        raise NoEquilibriumError(UNHELD)
+    return after

@@ -16,7 +16,7 @@ from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import elastic_energy, worst_residual
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
-from fastpin.solver.snap import _step_on_springs, find_state_beyond
+from fastpin.solver.snap import _on_springs, find_state_beyond
 from tests.support.snap_cases import GRIPPED, TURNED, problem
 from tests.support.tiers import some_survey
 
@@ -94,7 +94,7 @@ def test_where_a_state_is_near_no_creep_is_needed(pressed):
 def test_springs_carry_the_force_that_the_contact_does_not(pressed):
     system, now = pressed
     stiffness, load = np.array([2.0, 3.0, 0.5]), 1.05 * now.load
-    found = _step_on_springs(system, now, load, stiffness)
+    found = _on_springs(system, now, load, stiffness)
     tractions = np.r_[found.pressure, found.shear]
     carried = system.equilibrium @ tractions + stiffness * (found.motion - now.motion)
     assert carried == pytest.approx(system.load_forces(load), abs=1e-12)
@@ -108,7 +108,7 @@ def test_springs_carry_the_force_that_the_contact_does_not(pressed):
 
 def test_slack_springs_move_nothing(pressed):
     system, now = pressed
-    found = _step_on_springs(system, now, now.load, np.full(3, 2.0))
+    found = _on_springs(system, now, now.load, np.full(3, 2.0))
     for field in ("pressure", "shear", "motion", "slip"):
         assert getattr(found, field) == pytest.approx(getattr(now, field), abs=1e-12)
 
@@ -155,5 +155,5 @@ def test_a_snap_to_nowhere_is_told(nodes, monkeypatch):
 def test_the_system_on_springs_leaves_the_system_alone(pressed):
     system, now = pressed
     before = replace(system).motion_rows.copy()
-    _step_on_springs(system, now, now.load, np.ones(3))
+    _on_springs(system, now, now.load, np.ones(3))
     assert np.array_equal(system.motion_rows, before)
