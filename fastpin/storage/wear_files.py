@@ -222,13 +222,11 @@ class WearFile:
 
     def begin(self, grid: Grid, force: float) -> None:
         """Begin a new file."""
-        self.file.begin()
         task = self.task
         nodes = task.options.nodes if task.grid is None else grid.size
         attributes = {**layout.option_attributes(task.options), "nodes": nodes, "slip_sums": True, "title": self._title}
         attributes |= layout.beside_attributes(self._beside)
-        layout.write_head(self._h5, task.problem, task.stored_history, grid, attributes)
-        self._h5.attrs["run"] = self.file.run
+        self.file.begin(task.problem, task.stored_history, grid, attributes)
         group = self._h5.create_group("wear")
         group.attrs.update(law=task.wear.law, tolerance=task.wear.tolerance, chosen=np.array(task.wear.chosen))
         group["coefficients"] = task.coefficients(grid.theta)
@@ -270,13 +268,9 @@ class WearFile:
 
     def end(self, error: str | None) -> None:
         """End the file with the message of an error, if any."""
-        self._h5.attrs["complete"] = error is None
-        if error is not None:
-            self._h5.attrs["error"] = error
         if self._place is not None and not self._is_stored:
             self._put_place(self._place)
-        self.file.commit()
-        self.file.close()
+        self.file.end(error is None, error)
         if error is None:
             clear_checkpoints(self.file.path)
 

@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError, OutputError
-from fastpin.model.case import About
+from fastpin.model import About, Grid, LoadHistory, Problem
 from fastpin.solver import Interrupted, Restart, Result, SolveError
 from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.task import Task, deferred_interrupts
@@ -107,8 +107,8 @@ class GrowingFile:
         """Whether the file has begun, and has not ended."""
         return self._file is not None
 
-    def begin(self) -> None:
-        """Begin a new file, in place of one that has begun.
+    def begin(self, problem: Problem, history: LoadHistory, grid: Grid, attributes: Mapping[str, Any]) -> None:
+        """Begin a new file with its head, in place of one that has begun; see :func:`layout.write_head`.
 
         Raises
         ------
@@ -122,6 +122,8 @@ class GrowingFile:
         self._file = JournaledFile(self.path, new=True)
         self.h5 = h5py.File(self._file, "w")
         self.h5.flush()  # The signature goes first: what a killed process leaves is known as a result.
+        layout.write_head(self.h5, problem, history, grid, attributes)
+        self.h5.attrs["run"] = self.run
 
     @contextmanager
     def again(self, *arguments: str) -> Iterator[hdf5.Group]:
@@ -187,6 +189,15 @@ class GrowingFile:
         assert self._file is not None
         self.h5.flush()
         self._file.commit()
+
+    def end(self, complete: bool, error: str | None) -> None:
+        """End the file of a run that is `complete`, or ended early with the message of an error, if any."""
+        self.h5.attrs["complete"] = complete
+        self.h5.attrs.pop("error", None)
+        if error is not None:
+            self.h5.attrs["error"] = error
+        self.commit()
+        self.close()
 
     def close(self) -> None:
         """Close the file."""
@@ -322,15 +333,13 @@ class FileRecorder:
             return  # The file was reopened.
         if not self.file.is_open:
             self.check_overwriting()  # Check again: the choice of the arc may have taken long.
-        self.file.begin()
         self._states, self._cycles, self._pending = [], [], 0
         self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
         task = self.task
         attributes = {**layout.option_attributes(task.options), "nodes": run.grid.size, "title": self._title}
         attributes |= {**self._about.given(), **layout.beside_attributes(self._beside)}
         attributes |= {"arc_chosen": self.chosen_arc, "save_after": sorted(task.stops)}
-        layout.write_head(self._h5, task.problem, task.history, run.grid, attributes)
-        self._h5.attrs["run"] = self.file.run
+        self.file.begin(task.problem, task.history, run.grid, attributes)
         for name in ("start", "latest"):
             self._write_restart(self._h5.create_group(f"restart/{name}"))
         self._commit()
@@ -386,19 +395,14 @@ class FileRecorder:
     def end(self, error: str | None) -> None:
         """End the file with the statistics of the run and the message of its error, if any."""
         run = self._run
-        if self._pending:
+        if self._pending or self._cycles:
             self._commit()
         del self._h5["restart/latest"]
         self._write_restart(self._h5.create_group("restart/latest"))
         layout.write_statistics(self._h5, {**run.statistics, "seconds": self._all_seconds()})
-        self._h5.attrs["complete"] = run.complete
-        self._h5.attrs.pop("error", None)
-        if error is not None:
-            self._h5.attrs["error"] = error
-        elif run.complete:
+        if error is None and run.complete:
             write_extremes(self._h5)
-        self._commit()
-        self.file.close()
+        self.file.end(run.complete, error)
         clear_checkpoints(self.file.path)
 
     def so_far(self) -> Result:
