@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from fastpin.assess.outputs import whole_document
@@ -30,28 +31,36 @@ def run(options: argparse.Namespace) -> int:
         raise InputError("--format", "has a meaning with -o only")
     check_outputs({"--json": options.json})
     found: dict[str, Any] = {}
+
+    def work(name: str, bar: Bar, progress: records.Report) -> None:
+        chosen = catalog.BENCHMARKS[name]
+        outcome = chosen.compute(progress)
+        found[name] = outcome.rows
+        if options.json != "-":
+            shown = records.table(chosen.title, chosen.statement, chosen.sources, outcome.rows)
+            bar.write(*f"{name}: {shown}".split("\n"), "", file=sys.stdout)
+        if options.output is not None:
+            files = catalog.write_benchmark(name, outcome, options.output, formats)
+            to = sys.stderr if options.json == "-" else sys.stdout
+            bar.write(f"{name}: {', '.join(map(str, files))}", "", file=to)
+
+    code = _each(names, "benchmark", work)
+    return code or write_outputs([], options.json, lambda: whole_document(BENCHMARKS, found, {}))
+
+
+def _each(names: Sequence[str], word: str, work: Callable[[str, Bar, records.Report], None]) -> int:
+    """Do the work of each name with a progress bar, and return the exit code. After Ctrl-C say what is finished."""
+    finished: list[str] = []
     try:
-        with Bar(len(names), "benchmark {desc}") as progress_bar:
+        with Bar(len(names), f"{word} {{desc}}") as bar:
             for name in names:
-                progress_bar.describe(name)
-
-                def progress(part: float) -> None:
-                    progress_bar.update(len(found) + part - progress_bar.n)
-
-                chosen = catalog.BENCHMARKS[name]
-                outcome = chosen.compute(progress)
-                found[name] = outcome.rows
-                if options.json != "-":
-                    shown = records.table(chosen.title, chosen.statement, chosen.sources, outcome.rows)
-                    progress_bar.write(*f"{name}: {shown}".split("\n"), "", file=sys.stdout)
-                if options.output is not None:
-                    files = catalog.write_benchmark(name, outcome, options.output, formats)
-                    to = sys.stderr if options.json == "-" else sys.stdout
-                    progress_bar.write(f"{name}: {', '.join(map(str, files))}", "", file=to)
+                bar.describe(name)
+                work(name, bar, lambda part: bar.update(len(finished) + part - bar.n))
+                finished.append(name)
     except KeyboardInterrupt:
-        finished = f"benchmarks that are finished: {', '.join(found)}" if found else "no benchmark was finished"
-        return fail(f"interrupted; {finished}", EXIT_INTERRUPTED)
-    return write_outputs([], options.json, lambda: whole_document(BENCHMARKS, found, {}))
+        kept = f"{word}s that are finished: {', '.join(finished)}" if finished else f"no {word} was finished"
+        return fail(f"interrupted; {kept}", EXIT_INTERRUPTED)
+    return EXIT_OK
 
 
 def paper(options: argparse.Namespace) -> int:
@@ -61,22 +70,11 @@ def paper(options: argparse.Namespace) -> int:
         names = list(dict.fromkeys(catalog.figure_name(name) for name in options.figure or catalog.PAPER))
         formats = list(dict.fromkeys(options.format or catalog.FORMATS[:1]))
         catalog.check(names, options.output, nodes, formats)
-    finished: list[str] = []
-    try:
-        with Bar(len(names), "figure {desc}") as progress_bar:
-            for name in names:
-                began = time.perf_counter()
-                progress_bar.describe(name)
 
-                def progress(part: float) -> None:
-                    progress_bar.update(len(finished) + part - progress_bar.n)
+    def work(name: str, bar: Bar, progress: records.Report) -> None:
+        began = time.perf_counter()
+        files = catalog.make(name, options.output, nodes, progress, formats)
+        named, seconds = ", ".join(map(str, files)), time.perf_counter() - began
+        bar.write(f"figure {name}: {named}, {seconds:.1f} s", file=sys.stdout)
 
-                files = catalog.make(name, options.output, nodes, progress, formats)
-                finished.append(name)
-                seconds = time.perf_counter() - began
-                named = ", ".join(map(str, files))
-                progress_bar.write(f"figure {name}: {named}, {seconds:.1f} s", file=sys.stdout)
-    except KeyboardInterrupt:
-        written = f"figures that are finished: {', '.join(finished)}" if finished else "no figure was finished"
-        return fail(f"interrupted; {written}", EXIT_INTERRUPTED)
-    return EXIT_OK
+    return _each(names, "figure", work)

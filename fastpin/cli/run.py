@@ -6,7 +6,7 @@ import argparse
 import contextlib
 import dataclasses
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,8 +38,8 @@ from fastpin.report.states import (
     way_on,
 )
 from fastpin.runtime import beside
-from fastpin.states import choice, extremes
-from fastpin.states.margins import Margin, over_yield, static_margins
+from fastpin.states import choice
+from fastpin.states.margins import Margin, over_yield
 from fastpin.storage.held import Held
 
 if TYPE_CHECKING:  # they import compiled code
@@ -328,45 +328,40 @@ class RunReport:
             reached = held is not None and _reached(held.result)
             terminal.say("none of the states was to be kept" if reached else "no state was reached")
             return
-        result, marks = held.result, extremes.marked_places(held.extremes)
-        rows = stored_rows(case.problem, held.points, result.cycles, held.read, marks)
-        places = sorted({*rows.printed, *marks, *self._told(held)})
-        states = dict(zip(places, held.read(places), strict=True))
-        terminal.say(*state_table(case.problem, [states[place] for place in rows.printed], rows).split("\n"))
+        rows = stored_rows(case.problem, held.points, held.result.cycles, held.read, held.marks)
+        terminal.say(*state_table(case.problem, held.read(rows.printed), rows).split("\n"))
         for error in held.extremes.unread.values():
             read.add(error)
-        for name, lines in self._paragraphs(held, states, cycle, found).items():
+        for name, lines in self._paragraphs(held, cycle, found).items():
             told: list[str] = read(name, lines, [])
             terminal.say(*(line for line in told if line))
-        terminal.say(*(f"note: {note}" for note in note_lines(case, result)))
-        terminal.say(solver_line(result))
+        terminal.say(*(f"note: {note}" for note in note_lines(case, held.result)))
+        terminal.say(solver_line(held.result))
 
-    def _told(self, held: Held) -> Sequence[int]:
-        """The places of the states that are read for the lines below the table: of the last cycle, or of all."""
-        problem, cycles, size = self.case.problem, held.result.cycles, held.points.size
-        last = [] if problem.seat is None else [size - 1]
-        if cycles:
-            begin, end = choice.span_of(cycles[-1])
-            within = np.flatnonzero((held.points >= begin) & (held.points <= end)).tolist()
-            # The fatigue over the last cycle is told, and whether a bush walks.
-            return within + last if len(within) <= assess.fatigue.MOST_STOPS or last else []
-        return range(size) if _is_spectrum(self.case) and size <= assess.fatigue.MOST_STOPS else last
+    def _turning(self, held: Held) -> list[State]:
+        """The states of the last cycle, or of a spectrum. None of too many, unless a seat needs them."""
+        first, last = choice.span_of(held.result.cycles[-1]) if held.result.cycles else (0, len(self.case.history))
+        size = np.count_nonzero((held.points >= first) & (held.points <= last))
+        is_told = held.result.cycles or _is_spectrum(self.case)
+        is_short = size <= assess.fatigue.MOST_STOPS or (held.result.cycles and self.case.problem.seat is not None)
+        return held.between(first, last) if is_told and is_short else []
 
     def _paragraphs(
-        self, held: Held, at: Mapping[int, State], cycle: LoadCycle | None, found: Mapping[str, Any]
+        self, held: Held, cycle: LoadCycle | None, found: Mapping[str, Any]
     ) -> dict[str, Callable[[], list[str]]]:
         """The lines below the table, each with the name of what is read for them."""
         case, problem, cycles = self.case, self.case.problem, held.result.cycles
-        peaks, every = [at[place] for place in extremes.marked_places(held.extremes)], list(at.values())
-        states = every if cycle is None else cycle.states
+        peaks, states = held.peaks, self._turning(held) if cycle is None else cycle.states
 
         def seat() -> list[str]:
-            turning = [] if problem.seat is None else choice.last_cycle_states(every, cycles)
-            return seat_lines(problem, peaks, every[-1], turning)
+            if problem.seat is None:
+                return []
+            (last,) = held.read([held.points.size - 1])
+            return seat_lines(problem, peaks, last, choice.last_cycle_states(states, cycles))
 
         @cache
         def margins() -> list[Margin]:
-            rows = static_margins(problem, held.extremes, lambda places: [at[place] for place in places])
+            rows = held.static_margins
             if cycles or any(each is not None for each in found.values()):
                 rows = assess.questions.result_margins(problem, rows, states, cycles, found)
             return rows
@@ -380,7 +375,7 @@ class RunReport:
                 return of_question("fatigue")
             if cycles:
                 return assess.fatigue.fatigue_lines(states, cycles[-1], over_yield(margins()))
-            damages = assess.fatigue.spectrum_damages(every, len(case.history)) if _is_spectrum(case) else []
+            damages = assess.fatigue.spectrum_damages(states, len(case.history)) if _is_spectrum(case) else []
             return [assess.fatigue.spectrum_line(one, over_yield(margins())) for one in damages]
 
         return {

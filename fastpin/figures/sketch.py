@@ -147,17 +147,9 @@ def load_ranges(loads: LoadHistory | Sequence[State]) -> dict[str, LoadRange]:
 
 
 def draw_sketch(
-    problem: Problem,
-    ranges: Mapping[str, LoadRange],
-    look: Look,
-    state: State | None = None,
-    words: bool = True,
-    largest: float = 0.0,
+    problem: Problem, ranges: Mapping[str, LoadRange], look: Look, state: State | None = None, words: bool = True
 ) -> Sheet:
-    """Draw a joint on a new sheet. `words` False leaves out heading, caption and legend.
-
-    The arrow of the `largest` force, that of the joint unless given, has the full length.
-    """
+    """Draw a joint on a new sheet. `words` False leaves out heading, caption and legend."""
     sheet = look.sheet([look.width], extra=0.5 if words else 0.0)
     panel = sheet.axes[0, 0]
     panel.set_aspect("equal")
@@ -174,7 +166,7 @@ def draw_sketch(
     _draw_hole_and_pin(panel, problem, ranges)
     if state is not None:
         _draw_contact(panel, state)
-    force = largest or max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
+    force = max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
     beside = -1.0 if ranges.get("P", (0.0, 0.0))[0] < 0.0 else 1.0
     long = LONG * max((high.imag - low.imag) / LARGE, 1.0)
     _draw_loads(panel, problem, ranges, Scale(outside, "sxy" in ranges, force, long, beside))

@@ -89,21 +89,21 @@ def overview(page: PageParts) -> PageSection:
     parts: list[SectionPart] = [_status(source), *warnings_and_notes(source)]
     if source.points.size and not problem.dimensionless:
         parts.append(Text(f"Verdict: {verdict(page.margins, source.result.complete)}."))
-    if source.peaks:
-        largest = source.peaks[ties.top([state.peak_pressure for state in source.peaks])]
+    if source.held.peaks:
+        largest = source.held.peaks[ties.top([state.peak_pressure for state in source.held.peaks])]
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
         touched = f"largest contact pressure in all kept states: {pressure}, load point {point}"
         sentences = [touched if largest.peak_pressure else "the pin touches the hole in no kept state"]
-        sentences += [hoop_line(problem, source.peaks, body) for body in points.EDGES]
-        sentences += [*bush_line(problem, source.peaks).splitlines(), *_seat_lines(source)]
-        lines = cycle_lines(problem, source.result.cycles, source.peaks)
+        sentences += [hoop_line(problem, source.held.peaks, body) for body in points.EDGES]
+        sentences += [*bush_line(problem, source.held.peaks).splitlines(), *_seat_lines(source)]
+        lines = cycle_lines(problem, source.result.cycles, source.held.peaks)
         many = f"{len(lines):,} blocks of cycles: see hysteresis and slip"
         sentences += lines if len(lines) <= MOST_BLOCKS else [many]
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
         assessed = source.answer("fatigue")
         known = [] if isinstance(source.fatigue, str) or assessed else source.fatigue
         sentences += [] if assessed is None else QUESTIONS["fatigue"].lines(assessed, source.over_yield)
-        sentences += [hot_spot_line(found, source.peaks, source.over_yield) for found in known]
+        sentences += [hot_spot_line(found, source.held.peaks, source.over_yield) for found in known]
         sentences += [spectrum_line(found, source.over_yield) for found in source.spectrum]
         parts.append(Items([sentence(line) for line in sentences if line]))
     parts.append(Text(ANGLES))
@@ -336,7 +336,7 @@ def seat(page: PageParts) -> PageSection:
 
 def _seat_lines(source: Source) -> list[str]:
     (last,) = source.held.read([source.points.size - 1])
-    return seat_lines(source.case.problem, source.peaks, last, () if source.cycle is None else source.cycle.states)
+    return seat_lines(source.case.problem, source.held.peaks, last, () if source.cycle is None else source.cycle.states)
 
 
 def hysteresis(page: PageParts) -> PageSection:
@@ -357,7 +357,7 @@ def hysteresis(page: PageParts) -> PageSection:
         parts += slip_parts(page, cycle)
     if source.result.cycles:
         parts += drawn_or_reason(lambda: page.album.figure(cycles_of(source.result)))
-        lines = cycle_lines(source.case.problem, source.result.cycles, source.peaks)
+        lines = cycle_lines(source.case.problem, source.result.cycles, source.held.peaks)
         if len(lines) > MOST_BLOCKS:
             parts.append(Items([sentence(line) for line in lines]))
     return PageSection("hysteresis", "Hysteresis and slip", parts)
@@ -390,7 +390,7 @@ def stresses(page: PageParts) -> PageSection:
     if not drawn:
         return PageSection("stresses", "Stresses", [Text(NO_STATE, "missing")])
     parts = drawn_or_reason(lambda: page.album.figure(hoop_plot(InMemory(drawn))))
-    peaks = page.source.peaks
+    peaks = page.source.held.peaks
     lines = [hoop_line(problem, peaks, body) for body in points.EDGES]
     parts += [Text(sentence(line)) for line in lines if line]
     name = "peak_pressure" if problem.surfaces.plate.is_rigid else "peak_hoop"
@@ -425,7 +425,7 @@ def fatigue(page: PageParts) -> PageSection:
         return PageSection("fatigue", "Fatigue", [Text(found, "missing")])
     parts: list[SectionPart] = [page.album.figure(fatigue_of(found))]
     for one in found:
-        parts.append(Text(sentence(hot_spot_line(one, page.source.peaks, page.source.over_yield))))
+        parts.append(Text(sentence(hot_spot_line(one, page.source.held.peaks, page.source.over_yield))))
         if one.life is None:
             words = f"There is no life: the material of the {points.edge_body(one.problem, one.body).split(' at ')[0]}"
             words += " lacks constants for it. The key fatigue of a case file gives them; see docs/fatigue.md."

@@ -26,9 +26,9 @@ from fastpin.model.points import edge_body, elastic_bodies
 from fastpin.pages.content import Album, Facts, PageSection, Text
 from fastpin.report.states import stored_rows
 from fastpin.solver import Result
-from fastpin.states import LoadCycle, State, choice, extremes
+from fastpin.states import LoadCycle, State, choice
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import Margin, over_yield, static_margins, walk_margins
+from fastpin.states.margins import Margin, over_yield, walk_margins
 from fastpin.storage.held import Held
 from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.layout import versions
@@ -175,28 +175,13 @@ class Source:
     @cached_property
     def rows(self) -> tuple[list[State], dict[int, str]]:
         """The states of the table, and words on those left out, by the row before which they are left out."""
-        rows = stored_rows(self.case.problem, self.points, self.result.cycles, self.held.read, self.marks)
+        rows = stored_rows(self.case.problem, self.points, self.result.cycles, self.held.read, self.held.marks)
         return self.held.read(rows.printed), rows.gaps
-
-    @cached_property
-    def marks(self) -> dict[int, str]:
-        """The places of the extremes of all states, with words on each."""
-        return extremes.marked_places(self.held.extremes)
-
-    @cached_property
-    def static_margins(self) -> list[Margin]:
-        """The margins of the strengths and of the bush over all states."""
-        return static_margins(self.case.problem, self.held.extremes, self.held.read)
 
     @property
     def over_yield(self) -> dict[str, float]:
         """The bodies that yield, see :func:`fastpin.states.margins.over_yield`."""
-        return over_yield(self.static_margins)
-
-    @cached_property
-    def peaks(self) -> list[State]:
-        """The states of the extremes."""
-        return self.held.read(list(self.marks))
+        return over_yield(self.held.static_margins)
 
     @cached_property
     def drawn(self) -> DrawnStates:
@@ -210,9 +195,10 @@ class Source:
             places = places[(self.points > self.cycle.first) & (self.points <= self.cycle.last)]
             corners = places[self.points[places] % 1.0 == 0.0]
         places = corners if corners.size else places
-        chosen = choice.even_choice(sorted({*places.tolist(), *self.marks}), MOST_DRAWN, self.marks)
-        marks = [self.marks.get(place, "") for place in chosen]
-        return DrawnStates(self.held.read(chosen), self.points.size, self.result.cycles, marks)
+        marks = self.held.marks
+        chosen = choice.even_choice(sorted({*places.tolist(), *marks}), MOST_DRAWN, marks)
+        words = [marks.get(place, "") for place in chosen]
+        return DrawnStates(self.held.read(chosen), self.points.size, self.result.cycles, words)
 
     @cached_property
     def mapped(self) -> DrawnStates:
@@ -403,7 +389,7 @@ class PageParts:
             for row in fatigue_margins(problem, source.fatigue, cycle)
             if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
         ]
-        return in_order(all_margins(source.static_margins, last_cycle, found))
+        return in_order(all_margins(source.held.static_margins, last_cycle, found))
 
 
 def sentence(line: str) -> str:

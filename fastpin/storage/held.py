@@ -13,7 +13,9 @@ from fastpin.errors import InputWarning
 from fastpin.model.doubts import pressure_doubts
 from fastpin.solver.result import Result
 from fastpin.states import extremes, walking
-from fastpin.states.extremes import Found, KeptStates, yield_doubts_of
+from fastpin.states.choice import span_of
+from fastpin.states.extremes import Found, KeptStates
+from fastpin.states.margins import Margin, static_margins
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
@@ -41,6 +43,22 @@ class Held:
     def extremes(self) -> Found:
         """The extremes of all states that texts and figures show."""
         return extremes.marked_extremes(KeptStates(self.result.states)) if self.result.states else Found()
+
+    @cached_property
+    def marks(self) -> dict[int, str]:
+        """The places of the extremes of all states, with words on each."""
+        return extremes.marked_places(self.extremes)
+
+    @cached_property
+    def peaks(self) -> list[State]:
+        """The states of the extremes, at the places of the :attr:`marks`."""
+        return self.read(list(self.marks))
+
+    @cached_property
+    def static_margins(self) -> list[Margin]:
+        """The margins of the strengths and of the bush over all states."""
+        at = dict(zip(self.marks, self.peaks, strict=True))
+        return static_margins(self.result.problem, self.extremes, lambda places: [at[place] for place in places])
 
     @cached_property
     def residuals(self) -> dict[str, float]:
@@ -73,7 +91,13 @@ class Held:
 
     def doubts(self) -> Iterator[InputWarning]:
         """Yield warnings of doubtful pressures and von Mises stresses in all states, and of a bush that walks."""
-        problem, history, states = self.result.problem, self.result.history, self.result.states
-        yield from pressure_doubts(problem, history, (state.pressure for state in states))
-        yield from yield_doubts_of(problem, history, states)
-        yield from walking.walk_doubts(states, self.result.cycles)
+        problem, history = self.result.problem, self.result.history
+        yield from pressure_doubts(problem, history, [np.array([self.pressure])])
+        if self.points.size:
+            yield from extremes.yield_doubts(problem, history, self._yield_extremes, self.read)
+        if problem.seat is not None and (cycles := self.result.cycles):
+            yield from walking.walk_doubts(self.between(*span_of(cycles[-1])), cycles)
+
+    def _yield_extremes(self) -> Found:
+        """The extremes on which warnings of von Mises stresses depend."""
+        return extremes.yield_extremes(KeptStates(self.result.states))

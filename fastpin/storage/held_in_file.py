@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from fastpin.errors import InputWarning
 from fastpin.model.checks import file_path
-from fastpin.model.doubts import pressure_doubts
 from fastpin.solver.result import Result
-from fastpin.states import choice, walking
-from fastpin.states.extremes import Found, yield_doubts, yield_extremes
+from fastpin.states.extremes import Found, yield_extremes
 from fastpin.states.state import State
 from fastpin.storage import hdf5, layout
 from fastpin.storage.held import Held
-from fastpin.storage.store import load, load_points, open_result, places_between
+from fastpin.storage.store import load, load_points, open_result
 from fastpin.storage.stored_states import read_extremes
 
 STATES_AT_ONCE = 1_000
@@ -112,15 +109,6 @@ class HeldInFile(Held):
     def whole(self) -> Result:
         """Return the result with all its states."""
         return load(self._path)
-
-    def doubts(self) -> Iterator[InputWarning]:
-        """Yield warnings of doubtful pressures and von Mises stresses in all states, and of a bush that walks."""
-        problem, history = self.result.problem, self.result.history
-        yield from pressure_doubts(problem, history, [np.array([self.pressure])])
-        yield from yield_doubts(problem, history, self._yield_extremes, self.read)
-        if problem.seat is not None and (cycles := self.result.cycles):
-            states = load(self._path, states=places_between(self._path, *choice.span_of(cycles[-1]))).states
-            yield from walking.walk_doubts(states, cycles)
 
     def _yield_extremes(self) -> Found:
         with open_result(self._path) as file:

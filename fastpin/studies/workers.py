@@ -374,27 +374,25 @@ def pickled_outcomes(plan: Plan) -> PickledOutcomes:
     return content
 
 
+@dataclass(eq=False)
 class Work:
     """The tasks of one call: runs that are solved, and finished runs whose outcomes are read."""
 
-    def __init__(
-        self,
-        plan: Plan,
-        index: Index,
-        results: Path,
-        outcomes: PickledOutcomes,
-        executor: Executor | None,
-        workers: int,
-        files: bool,
-    ) -> None:
-        self._plan, self._index, self._results, self._outcomes = plan, index, results, outcomes
-        self._executor, self._workers = executor, workers
-        self._setting = Setting(os.getpid(), __version__, 0 if files else MOST_PACKED)
+    plan: Plan
+    index: Index
+    results: Path
+    outcomes: PickledOutcomes
+    executor: Executor | None
+    workers: int
+    files: bool
+
+    def __post_init__(self) -> None:
+        self._setting = Setting(os.getpid(), __version__, 0 if self.files else MOST_PACKED)
         self._submitted: set[str] = set()
 
     def solve(self, todo: Collection[str]) -> Generator[list[RunEnd], None, None]:
         """Yield the ends of the runs of each batch when it ends."""
-        pace, todo = Pace(self._workers), neighbours(self._plan, todo)
+        pace, todo = Pace(self.workers), neighbours(self.plan, todo)
         for run in todo:
             self._path(run).unlink(missing_ok=True)  # A damaged file, or the states of a failed run.
         with closing(self._run(todo, self._submit_solve, pace.size)) as ended:
@@ -409,12 +407,12 @@ class Work:
             tasks = []
             for run in batch:
                 path = self._path(run)
-                packed = None if path.exists() else self._index.content(run)
-                wanted = {name: self._outcomes[name] for name in missing[run]}
+                packed = None if path.exists() else self.index.content(run)
+                wanted = {name: self.outcomes[name] for name in missing[run]}
                 tasks.append((run, str(path), packed, wanted, self._setting))
             return executor.submit(in_turn, read_run, tasks)
 
-        pace = Pace(self._workers)
+        pace = Pace(self.workers)
         with closing(self._run(missing, submit, pace.size)) as ended:
             for ends in ended:
                 pace.learn(ends)
@@ -422,16 +420,16 @@ class Work:
 
     def _lost(self, end: RunEnd, names: list[str]) -> RunEnd:
         """The end of a run whose outcomes could not be read."""
-        lost = {name: OutcomeValue(self._outcomes[name][0], None, end.reason) for name in names}
+        lost = {name: OutcomeValue(self.outcomes[name][0], None, end.reason) for name in names}
         return RunEnd(end.id, None, outcomes=lost)
 
     def _submit_solve(self, executor: Executor, batch: Batch[str]) -> Future[list[RunEnd]]:
         """Submit runs. If its worker died, perhaps in a function of the user, a run's outcomes are left for later."""
         tasks = []
         for run in batch:
-            outcomes = {} if run in self._submitted else self._outcomes
+            outcomes = {} if run in self._submitted else self.outcomes
             self._submitted.add(run)
-            case = self._plan.case(self._plan.runs[run])
+            case = self.plan.case(self.plan.runs[run])
             tasks.append((run, case, str(self._path(run)), outcomes, self._setting))
         return executor.submit(in_turn, solve_run, tasks)
 
@@ -444,7 +442,7 @@ class Work:
         # An executor may run its tasks in this process. They have one thread for BLAS, as in every worker.
         with threadpool_limits(limits=1, user_api="blas"):
             try:
-                with closing(run_tasks(self._executor, self._workers, tasks, submit, size)) as ended:
+                with closing(run_tasks(self.executor, self.workers, tasks, submit, size)) as ended:
                     for batch, ends in ended:
                         if isinstance(ends, BaseException):
                             died = type(ends).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
@@ -456,7 +454,7 @@ class Work:
                 raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
 
     def _path(self, run: str) -> Path:
-        return self._results / f"{run}.h5"
+        return self.results / f"{run}.h5"
 
 
 class Pace:
