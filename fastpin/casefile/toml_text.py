@@ -11,7 +11,7 @@ import gc
 import re
 import tomllib
 from collections.abc import Callable, Collection, Iterator, Mapping
-from functools import cached_property
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -156,11 +156,11 @@ class CaseText:
         most_points = max(line.count(".") for line in lines)  # a key stands on one line
         if most_points >= MOST_PARTS and _LONG_KEY.search(STRING_OR_COMMENT.sub('""', text)):
             self.readable = False
-            self._lines = _Lines([])
+            self._located = cache(partial(_locate, []))
             self._add(0, f"a key has more than {MOST_PARTS} parts, joined by points")
             self.root = Section(self, (), {})
             return
-        self._lines = _Lines(lines.copy())
+        self._located = cache(partial(_locate, lines.copy()))  # for faults only
         self.root = Section(self, (), self._parse(lines))
 
     def _parse(self, lines: list[str]) -> dict[str, Any]:
@@ -178,7 +178,7 @@ class CaseText:
                 return {}
             except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
                 message, line = syntax_message(str(error), lines)
-                _, keys, starts = self._lines.located
+                _, keys, starts = self._located()
                 start = starts.get(line, line)
                 if line != start:
                     message = f"the value that begins here is not closed, or wrong in line {line}"
@@ -235,7 +235,7 @@ class CaseText:
 
     def line(self, *place: str | int) -> int:
         """Line (from 1) of the value at `place`, or of the smallest table around it; 0 if neither is in the text."""
-        places = self._lines.located[0]
+        places = self._located()[0]
         around = (place[:length] for length in range(len(place), 0, -1))
         return next((places[part] for part in around if part in places), 0)
 
@@ -467,19 +467,7 @@ def _uncollected() -> Iterator[None]:
             gc.enable()
 
 
-class _Lines:
-    """The lines of a text. Places in them are looked up for a fault only."""
-
-    def __init__(self, lines: list[str]) -> None:
-        self._all = lines
-
-    @cached_property
-    def located(self) -> tuple[dict[KeyPath, int], dict[int, KeyPath], dict[int, int]]:
-        """The lines of all headers and keys, see :func:`_locate`."""
-        with _uncollected():
-            return _locate(self._all)
-
-
+@_uncollected()
 def _locate(lines: list[str]) -> tuple[dict[KeyPath, int], dict[int, KeyPath], dict[int, int]]:
     """The lines of all headers and keys.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -132,9 +132,6 @@ class JointResult(Sequence[JointState]):
 
     def __getitem__(self, place):  # type: ignore[no-untyped-def]
         return self.states[place]
-
-    def __iter__(self) -> Iterator[JointState]:
-        return iter(self.states)
 
     def __repr__(self) -> str:
         pins, plates = len(self.joint.pins), len(self.joint.plates)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, overload
@@ -292,9 +292,6 @@ class WearResult(ReadOnly, Sequence[WornCycle]):
 
     def __len__(self) -> int:
         return len(self.cycles)
-
-    def __iter__(self) -> Iterator[WornCycle]:
-        return iter(self.cycles)
 
 
 def slip_doubts(coefficients: np.ndarray, cycle: WornCycle) -> list[InputWarning]:
