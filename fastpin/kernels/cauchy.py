@@ -20,12 +20,6 @@ from fastpin.runtime.jit import compiled, inner
 TERMS = 28
 """Terms of the expansion of a block."""
 
-FAR = 0.35
-"""Largest radius of a block, in parts of its distance, at which its expansion is used."""
-
-DEEPEST = 64
-"""Levels of the tree, at most."""
-
 # B_2k/(2k + 1)! for k = 1 to 10, with the Bernoulli numbers B
 _SERIES = np.array(
     [
@@ -235,7 +229,8 @@ def cauchy(theta, away, outside, nodes, turn, tree, centres, radii, block_moment
     out : ndarray of complex, shape (m, 3)
         At a point on the edge Z lacks its infinite terms: they are zero in the stresses.
     """
-    stack, runs = np.empty(2 * DEEPEST, dtype=np.int64), np.empty((2 * DEEPEST + tree.shape[0], 2), dtype=np.int64)
+    deepest = 64  # levels of the tree, at most
+    stack, runs = np.empty(2 * deepest, dtype=np.int64), np.empty((2 * deepest + tree.shape[0], 2), dtype=np.int64)
     scale = 1.0 / (2.0 * math.pi)
     for i in range(theta.size):
         size = math.exp(away[i] if outside else -away[i])
@@ -247,7 +242,7 @@ def cauchy(theta, away, outside, nodes, turn, tree, centres, radii, block_moment
         while top:
             top -= 1
             b = stack[top]
-            if radii[b] <= FAR * abs(zeta - centres[b]):
+            if radii[b] <= 0.35 * abs(zeta - centres[b]):  # far enough for its expansion
                 one, two, three = _expansion(zeta, centres[b], block_moments[b])
                 whole, shear, slope = whole + one, shear + two, slope + three
             elif tree[b, 2] < 0:

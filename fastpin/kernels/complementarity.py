@@ -16,14 +16,6 @@ import numpy as np
 
 from fastpin.runtime.jit import compiled, inner
 
-# Codes that `lemke` returns.
-SOLVED = 0
-RAY = 1  # the method has ended on a ray
-UNFINISHED = 2  # more pivots than allowed
-
-SMALL_ENTRY = 1e-11  # entries of the entering column below this part of its largest entry are zero
-TIE = 1e-11  # relative difference of two ratios that are equal
-
 
 @inner
 def _lexically_smaller(tableau, first, second, enter):
@@ -44,16 +36,17 @@ def _leaving_row(tableau, basis, enter):
     largest = 0.0
     for i in range(k):
         largest = max(largest, abs(tableau[i, enter]))
+    small = 1e-11 * largest  # smaller entries are zero
     least, chosen = np.inf, -1
     for i in range(k):
-        if tableau[i, enter] > SMALL_ENTRY * largest:
+        if tableau[i, enter] > small:
             least = min(least, tableau[i, last] / tableau[i, enter])
     if least == np.inf:
         return chosen
     for i in range(k):
-        if tableau[i, enter] > SMALL_ENTRY * largest:
+        if tableau[i, enter] > small:
             ratio = tableau[i, last] / tableau[i, enter]
-            if ratio <= least + TIE * max(abs(least), abs(ratio)):
+            if ratio <= least + 1e-11 * max(abs(least), abs(ratio)):  # equal ratios
                 if basis[i] == artificial:
                     return i
                 if chosen < 0 or _lexically_smaller(tableau, i, chosen, enter):
@@ -95,12 +88,12 @@ def lemke(matrix, vector, cover, most_pivots, tableau, basis, z):
     basis : ndarray of int, shape (k,)
         Memory: the column of the basic variable of each row.
     z : ndarray, shape (k,)
-        Output, where the code is SOLVED.
+        Output, where the problem is solved.
 
     Returns
     -------
-    int
-        One of the codes above.
+    bool
+        Whether the problem is solved. Otherwise the method has ended on a ray, or needs more pivots than allowed.
     """
     k = vector.size
     artificial, last = 2 * k, 2 * k + 1
@@ -115,11 +108,11 @@ def lemke(matrix, vector, cover, most_pivots, tableau, basis, z):
         tableau[i, last] = vector[i]
         basis[i] = i
         if not np.isfinite(vector[i]):
-            return RAY
+            return False
         if vector[i] / cover[i] <= lowest and vector[i] < 0.0:  # of equal ones the last: lexically smallest
             lowest, row = vector[i] / cover[i], i
     if row < 0:
-        return SOLVED
+        return True
     for i in range(k):  # the first exchange makes all right-hand sides positive
         if i != row:
             factor = cover[i] / cover[row]
@@ -134,13 +127,13 @@ def lemke(matrix, vector, cover, most_pivots, tableau, basis, z):
     for _ in range(most_pivots):
         row = _leaving_row(tableau, basis, enter)
         if row < 0:
-            return RAY
+            return False
         left = basis[row]
         _pivot(tableau, basis, row, enter)
         if left == artificial:
             for i in range(k):
                 if basis[i] >= k:
                     z[basis[i] - k] = tableau[i, last]
-            return SOLVED
+            return True
         enter = left + k if left < k else left - k
-    return UNFINISHED
+    return False

@@ -22,22 +22,6 @@ from fastpin.runtime.jit import compiled, inner
 TERMS = 28
 """Moments of a block, of the powers 0 to 27 of u."""
 
-FAR = 0.3
-"""Largest product of b and the largest u of a block at which its moments are used. Its power 28 is 2e-15."""
-
-FARTHER = 0.08
-"""The same for half of the moments: its power 14 is 4e-16."""
-
-WIDEST = 1.2
-"""Largest half width of a block with moments, rad."""
-
-NEAR = 0.02
-"""Half distance from the middle of a block, rad, below which it is taken by itself. It would lose two digits of a sum.
-"""
-
-SAME = 4e-15
-"""Distance of two angles that is rounding, rad."""
-
 
 @inner
 def _reduced(angle):
@@ -68,8 +52,9 @@ def gather(nodes, blocks, longest, points, weights, centres, moments):
         first, last = blocks[b, 0], blocks[b, 1]
         centre, half = 0.5 * (nodes[first, 0] + nodes[last, 0]), 0.5 * (nodes[last, 0] - nodes[first, 0])
         centres[b, 0], centres[b, 1], centres[b, 2] = centre, math.cos(0.5 * centre), math.sin(0.5 * centre)
-        centres[b, 3] = math.tan(0.5 * half) if half <= WIDEST else np.inf
-        for j in range(first, last if half <= WIDEST else first):
+        has_moments = half <= 1.2  # rad
+        centres[b, 3] = math.tan(0.5 * half) if has_moments else np.inf
+        for j in range(first, last if has_moments else first):
             step, before, after, rule = nodes[j + 1, 0] - nodes[j, 0], nodes[j, 2], nodes[j + 1, 2], 0
             while rule < longest.size - 1 and step > longest[rule] * half:
                 rule += 1
@@ -98,17 +83,18 @@ def edge(theta, field, nodes, joined, blocks, centres, moments, out):
         Last node of a patch all round, which is its first node once more; -1 without one.
     out : ndarray, shape (3, m)
     """
+    rounding = 4e-15  # rad
     for i in range(theta.size):
         total, cos, sin = 0.0, math.cos(0.5 * theta[i]), math.sin(0.5 * theta[i])  # total: 4 pi H
         pressure, shear = 0.0, 0.0
         for b in range(blocks.shape[0]):
             reach, first, last = centres[b, 3], blocks[b, 0], blocks[b, 1]
             across, along = sin * centres[b, 1] - cos * centres[b, 2], cos * centres[b, 1] + sin * centres[b, 2]
-            if abs(across) < NEAR:
+            if abs(across) < 0.02:  # the difference above has lost two digits
                 across, along = math.sin(0.5 * (theta[i] - centres[b, 0])), math.cos(0.5 * (theta[i] - centres[b, 0]))
-            if reach * abs(along) <= FAR * abs(across):
+            if reach * abs(along) <= 0.3 * abs(across):  # the power 28 of 0.3 is 2e-15
                 inverse = along / across
-                terms = TERMS if reach * abs(inverse) > FARTHER else TERMS // 2
+                terms = TERMS if reach * abs(inverse) > 0.08 else TERMS // 2  # the power 14 of 0.08 is 4e-16
                 square, odd, even = inverse * inverse, moments[b, terms - 1], 0.0
                 for m in range(terms - 2, 0, -2):  # two sums side by side
                     odd, even = odd * square + moments[b, m - 1], even * square + moments[b, m]
@@ -122,7 +108,7 @@ def edge(theta, field, nodes, joined, blocks, centres, moments, out):
                     step = nodes[j + 1, 0] - nodes[j, 0]
                     slope = (nodes[j + 1, 2] - nodes[j, 2]) / step if step > 0.0 else 0.0
                     jump += slope
-                    if -SAME < x < step + SAME:
+                    if -rounding < x < step + rounding:
                         part = min(max(x / step, 0.0), 1.0) if step > 0.0 else 0.0
                         pressure = nodes[j, 1] + part * (nodes[j + 1, 1] - nodes[j, 1])
                         shear = nodes[j, 2] + part * (nodes[j + 1, 2] - nodes[j, 2])

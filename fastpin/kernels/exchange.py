@@ -58,13 +58,7 @@ TIME, DISSIPATION, WORK, SEAT_DISSIPATION = 0, 1, 2, 3
 # The row of the slip tally that only runs with wear have: pressure times slip distance.
 WEAR = 4
 
-RATE_TOLERANCE = 1e-11  # rates below this part of the largest rate are zero
-VALUE_TOLERANCE = 1e-13  # likewise for gaps and the reserve mu N - |T|
-PRESSURE_TOLERANCE = 1e-10  # likewise for pressures; wider, so that mirrored nodes open together
-SMALL_PIVOT = 1e-9  # pivots below this part of a typical pivot belong to a mechanism
-UNUSUAL_PIVOT = 1e-6  # a stiffness this far below a typical one, or a compliance this far above: a new tableau is built
-TOGETHER_ROUNDS = 12  # rounds in which all violators change together; afterwards one at a time
-MOST_UPDATES_A_CHANGE = 6  # appended by one change of status, with the change of a node that takes over
+VALUE_TOLERANCE = 1e-13  # gaps and reserves mu N - |T| below this part of the largest gap or bound are zero
 
 
 @inner
@@ -188,7 +182,7 @@ def _change_status(tableau, updates, contact, friction, typical, node, new):
         stiffness = abs(column[node]) * typical
     else:
         stiffness = np.inf
-    if stiffness < SMALL_PIVOT:
+    if stiffness < 1e-9:  # the pivot belongs to a mechanism
         return updates, 0.0
     if old == STICK or old == OPEN:
         factor = (new - tie) * friction[node]
@@ -366,7 +360,7 @@ def _advance(contact, rates, friction, weights, step, stop):
         if status[i] == OPEN:
             if gap[i] <= VALUE_TOLERANCE * most_gap:
                 gap[i] = 0.0
-        elif pressure[i] <= PRESSURE_TOLERANCE * most_pressure:
+        elif pressure[i] <= 1e-10 * most_pressure:  # wider, so that mirrored nodes open together
             pressure[i], shear[i] = 0.0, 0.0
         elif status[i] == STICK:
             bound = friction[i] * pressure[i]
@@ -435,7 +429,7 @@ def _apply_queue(tableau, contact, queue, friction, typical, fixed):
         if fixed[node]:
             return ARC_END if old == OPEN else UNBONDED
         updates = counts[UPDATES]
-        if updates + MOST_UPDATES_A_CHANGE > tableau.left.shape[1]:
+        if updates + 6 > tableau.left.shape[1]:  # a change needs up to 6, with that of a node that takes over
             return REBUILD
         new = POSITIVE if old == STICK and wanted == OPEN else wanted  # a sticking node slips before it opens
         counts[NEEDED_COLUMN] = _needed_column(tableau, updates, contact, node, new)
@@ -464,7 +458,7 @@ def _apply_queue(tableau, contact, queue, friction, typical, fixed):
         if new == wanted:
             counts[NEXT] += 1
             counts[EXCHANGES] += 1
-        if size < UNUSUAL_PIVOT:  # rounding has grown by as much
+        if size < 1e-6:  # an unusual pivot: rounding has grown by as much
             return REBUILD
     return REACHED
 
@@ -519,15 +513,15 @@ def follow(tableau, contact, load, queue, friction, fixed, typical, stop, most_e
         if code != REACHED:
             return code
         traction_rate, length_rate = _rate_scales(rates, contact, friction)
-        traction_tol, length_tol = RATE_TOLERANCE * traction_rate, RATE_TOLERANCE * length_rate
+        traction_tol, length_tol = 1e-11 * traction_rate, 1e-11 * length_rate  # smaller rates are zero
         if not (np.isfinite(traction_rate) and np.isfinite(length_rate)):
             return NO_SUPPORT
 
         # Settle the statuses: friction first, then closing, then opening.
         if not settled:
             queued = _friction_violators(contact, rates, friction, traction_tol, length_tol, queue)
-            if queued > 1 and counts[ROUND] >= TOGETHER_ROUNDS:
-                for k in range(1, queued):  # the lowest node alone
+            if queued > 1 and counts[ROUND] >= 12:  # all together did not settle: the lowest node alone
+                for k in range(1, queued):
                     if queue.node[k] < queue.node[0]:
                         queue.node[0], queue.status[0] = queue.node[k], queue.status[k]
                 queued = 1

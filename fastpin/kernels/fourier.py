@@ -13,12 +13,6 @@ import math
 
 import numpy as np
 
-SERIES_BELOW, SERIES_TERMS = 0.5, 12
-"""Size of z below which the quotient is summed by its series, and the terms of the series."""
-
-FEW = 4
-"""Hats up to this number are summed in complex numbers: equally spaced nodes need one or two columns."""
-
 BLOCK = 256
 """Harmonics that are summed together. It bounds the memory of thin walls, which need thousands of them."""
 
@@ -35,21 +29,15 @@ def hat_moments(order: np.ndarray, h_left: np.ndarray, h_right: np.ndarray) -> n
 
 def _half_moments(order: np.ndarray, length: np.ndarray) -> np.ndarray:
     z = np.multiply.outer(1j * length, order)
-    small = np.abs(z) < SERIES_BELOW
-    quotient = _series(np.where(small, z, 0.0))
+    small, terms = np.abs(z) < 0.5, 12  # there the quotient is summed by its series
+    minus, quotient = -np.where(small, z, 0.0), np.full_like(z, 1.0 / math.factorial(terms + 2))
+    for k in range(terms + 1, 1, -1):
+        quotient *= minus
+        quotient += 1.0 / math.factorial(k)
     if not small.all():
         large = z[~small]
         quotient[~small] = (np.expm1(-large) + large) / (large * large)
     found: np.ndarray = length[:, None] * quotient
-    return found
-
-
-def _series(z: np.ndarray) -> np.ndarray:
-    """[exp(-z) - 1 + z]/z^2 for small z."""
-    found, minus = np.full_like(z, 1.0 / math.factorial(SERIES_TERMS + 2)), -z
-    for k in range(SERIES_TERMS + 1, 1, -1):
-        found *= minus
-        found += 1.0 / math.factorial(k)
     return found
 
 
@@ -72,7 +60,7 @@ def hat_columns(
         part = coefficients[:, begin : begin + BLOCK]
         seen_waves = waves(seen, begin, part.shape[1])
         hats = _hats(begin, part.shape[1], nodes, h_left, h_right)
-        if nodes.size <= FEW:
+        if nodes.size <= 4:  # equally spaced nodes need one or two columns: sum in complex numbers
             sums = seen_waves @ (part[:, :, None] * hats.T).transpose(1, 0, 2).reshape(part.shape[1], -1)
             sums = sums.reshape(seen.size, 3, nodes.size)
             found[:2] += sums[:, :2].real.transpose(1, 0, 2)

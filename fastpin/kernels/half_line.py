@@ -46,15 +46,6 @@ LAW = GAMMAS + 1
 TABLE, NODE, INWARDS, SOLUTIONS, PLACE = range(5)
 """Columns of the ends of a fit."""
 
-FIRST, COUNT, DEGREE, FIRST_END, LAST_END = range(5)
-"""Columns of fits to try: their first value, number of nodes, degree of the polynomial (none: -1), and their ends.
-
-The ends are the rows from FIRST_END up to LAST_END, without the latter.
-"""
-
-NEWTON_STEPS = 5
-"""Steps of Newton's method for the place of an end. It starts within half a node distance."""
-
 LEAST_PLACE, MOST_PLACE = -1.3, 0.5
 """Least and largest distance of an end from its outermost node, in node distances inwards.
 
@@ -63,24 +54,6 @@ The next node outwards is at -1, and the solution of the nodes has an end up to 
 
 AT_END = 1e-12
 """Distance from an end that is rounding, in node distances. Its root, 1e-6, would be none."""
-
-DEPENDENT = 1e-10
-"""Ratio of pivots below which columns of a fit depend on each other. In other fits it is above 1e-7."""
-
-SMALLEST = 1e-15
-"""A singular value below this part of the largest one counts as zero, as in ``numpy.linalg.pinv``."""
-
-NO_TURN = 1e150
-"""Ratio from which on a rotation is far below rounding. Its square would overflow."""
-
-ORTHOGONAL = 1e-14
-"""Cosine of the angle of two vectors that counts as zero: the rounding of a product of ten to twenty numbers."""
-
-SWEEPS = 30
-"""Most sweeps of Jacobi's method. It ends by itself after some seven."""
-
-SLOPE_STEP = 0.1
-"""Distance from a cusp over which the slope on its smooth side is taken, in node distances."""
 
 
 @inner
@@ -194,10 +167,10 @@ def _invert(A, diagonal, inverse):
 def _rotate(a, b, also_a, also_b):
     """Rotate the vectors `a` and `b` until they are orthogonal, and two others alike. Return whether they were so."""
     size_a, size_b, part = _product(a, a, 0), _product(b, b, 0), _product(a, b, 0)
-    if abs(part) <= ORTHOGONAL * math.sqrt(size_a * size_b):
+    if abs(part) <= 1e-14 * math.sqrt(size_a * size_b):  # rounding of ten to twenty products
         return True
     ratio = 0.5 * (size_b - size_a) / part
-    if abs(ratio) > NO_TURN:
+    if abs(ratio) > 1e150:  # the turn is far below rounding, and the square would overflow
         return True
     tangent = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + math.sqrt(1.0 + ratio**2))
     cosine = 1.0 / math.sqrt(1.0 + tangent**2)
@@ -220,7 +193,7 @@ def _pseudo_invert(A, diagonal, inverse):
         for i in range(j):  # a slice that takes a slice would compile for seconds: the text of its error
             columns[j, i] = A[j, i]
         columns[j, j], turns[j, j] = diagonal[j], 1.0
-    for _ in range(SWEEPS):
+    for _ in range(30):  # it ends by itself after some seven
         are_orthogonal = True
         for i in range(n):
             for j in range(i + 1, n):
@@ -232,9 +205,10 @@ def _pseudo_invert(A, diagonal, inverse):
     for k in range(n):
         largest = max(largest, _product(columns[k], columns[k], 0))
     inverse[:] = 0.0
+    small = 1e-15  # a singular value below this part of the largest one is zero, as in numpy.linalg.pinv
     for k in range(n):
         square = _product(columns[k], columns[k], 0)
-        if square > SMALLEST**2 * largest:
+        if square > small**2 * largest:
             for i in range(n):
                 for j in range(n):
                     inverse[i, j] += turns[k, i] * columns[k, j] / square
@@ -258,13 +232,14 @@ def _solve(values, degree, ends, tables, coefficients, spread):
     misfit, least, largest = _product(A[n], A[n], n), np.inf, 0.0
     for k in range(n):
         least, largest = min(least, abs(diagonal[k])), max(largest, abs(diagonal[k]))
-    if least > DEPENDENT * largest:
+    are_independent = least > 1e-10 * largest  # the ratio is above 1e-7 in other fits
+    if are_independent:
         _invert(A, diagonal, spread)
     else:  # solutions of two ends some nodes apart depend on each other: take the least coefficients
         _pseudo_invert(A, diagonal, spread)
     for k in range(n):
         coefficients[k] = _product(spread[k], A[n, :n], 0)
-    if not least > DEPENDENT * largest:
+    if not are_independent:
         for i in range(n):
             left = diagonal[i] * coefficients[i] - A[n, i]
             for k in range(i + 1, n):
@@ -292,7 +267,7 @@ def _match(end, table, coefficients, lever):
             series[q] += table[MATCHING + q, j] * coefficients[j] / factorial
     slope = series[1]
     place = -series[0] / slope
-    for _ in range(NEWTON_STEPS):
+    for _ in range(5):  # Newton's method starts within half a node distance
         value = slope = 0.0
         for q in range(terms - 1, -1, -1):
             slope = slope * place + value
@@ -484,17 +459,19 @@ def end_places(values, tries, ends, tables, found):
     ----------
     values : ndarray, shape (v,)
     tries : ndarray of int, shape (t, 5)
+        A row has the first value of a fit, the number of nodes, the degree of the polynomial (none: -1), the first row
+        of `ends`, and the row behind its last one.
     ends, tables : ndarray
         As for :func:`solve`, for all fits.
     found : ndarray, shape (t, 2)
         Output: the place, in node distances inwards from its outermost node, NaN if it is not plausible; and its error.
     """
     for t in range(tries.shape[0]):
-        degree, own = tries[t, DEGREE], ends[tries[t, FIRST_END] : tries[t, LAST_END]]
-        first, n = tries[t, FIRST], _unknowns(degree, own)
+        first, count, degree, own = tries[t, 0], tries[t, 1], tries[t, 2], ends[tries[t, 3] : tries[t, 4]]
+        n = _unknowns(degree, own)
         coefficients, spread, levers = np.empty(n), np.empty((n, n)), np.empty((own.shape[0], n))
         matches = np.empty((own.shape[0], 3))
-        scatter = _solve(values[first : first + tries[t, COUNT]], degree, own, tables, coefficients, spread)
+        scatter = _solve(values[first : first + count], degree, own, tables, coefficients, spread)
         _match_all(degree, own, tables, coefficients, matches, levers)
         found[t, 0], found[t, 1] = matches[0, 0], scatter * _norm_of(levers[0], spread)
 
@@ -514,8 +491,8 @@ def value_errors(values, tries, ends, tables, at, found):
         Output: the error; NaN if the end has no plausible place.
     """
     for t in range(tries.shape[0]):
-        degree, own = tries[t, DEGREE], ends[tries[t, FIRST_END] : tries[t, LAST_END]]
-        first, count, n = tries[t, FIRST], tries[t, COUNT], _unknowns(degree, own)
+        first, count, degree, own = tries[t, 0], tries[t, 1], tries[t, 2], ends[tries[t, 3] : tries[t, 4]]
+        n = _unknowns(degree, own)
         coefficients, spread, levers = np.empty(n), np.empty((n, n)), np.empty((own.shape[0], n))
         matches, row, beside = np.empty((own.shape[0], 3)), np.empty(n), np.empty(n)
         scatter = _solve(values[first : first + count], degree, own, tables, coefficients, spread)
@@ -527,8 +504,9 @@ def value_errors(values, tries, ends, tables, at, found):
         _row(x, count - 1.0, degree, own, tables, matches, row)
         found[t] = scatter * _norm_of(row, spread)
         if math.isnan(at[t]):
-            _row(x - own[0, INWARDS] * SLOPE_STEP, count - 1.0, degree, own, tables, matches, beside)
+            step = 0.1  # node distances; the slope is that of the smooth side
+            _row(x - own[0, INWARDS] * step, count - 1.0, degree, own, tables, matches, beside)
             for k in range(n):
                 beside[k] -= row[k]
-            slope = abs(_product(beside, coefficients, 0)) / SLOPE_STEP
+            slope = abs(_product(beside, coefficients, 0)) / step
             found[t] += slope * scatter * _norm_of(levers[0], spread)

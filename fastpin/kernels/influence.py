@@ -30,7 +30,6 @@ from fastpin.kernels import fourier
 from fastpin.runtime.jit import compiled
 
 TWO_PI = 2.0 * math.pi
-TWO_PI_LOW = 2.4492935982947064e-16
 NEAR = 8.0  # lengths of a half hat within which the exact difference is used
 
 # Cl2(x) = x - x ln|x| + sum a_k x^(2k+1) and Cl2(pi - y) = y ln 2 - sum b_k y^(2k+1). The Bernoulli numbers
@@ -44,16 +43,13 @@ ZETA = np.array([
 ])  # fmt: skip
 AROUND_ZERO = 2.0 * ZETA / (TWO_PI**_ORDERS * _ORDERS * (_ORDERS + 1.0))
 AROUND_PI = AROUND_ZERO * (2.0**_ORDERS - 1.0)
-AROUND_ZERO_TERMS = 14
-AROUND_PI_TERMS = 18
 
 GAUSS_POINT, GAUSS_WEIGHT = np.polynomial.legendre.leggauss(4)
 
 BLOCK_PARITY = np.array([[1.0, -1.0], [-1.0, 1.0]])
 """Parity in the distance of two nodes of the blocks [[(gap, N), (gap, T)], [(slip, N), (slip, T)]]."""
 
-FAR = 6.0  # lengths of the longer half of a hat beyond which a series in its moments is used
-TERMS = 15  # terms of this series
+TERMS = 15  # terms of the series in the moments of a hat
 HAT_POINT, HAT_WEIGHT = np.polynomial.legendre.leggauss(8)  # for the moments of a half hat, on (0, 1)
 HAT_POINT = 0.5 * (1.0 + HAT_POINT)
 HAT_WEIGHT = 0.5 * HAT_WEIGHT * (1.0 - HAT_POINT)
@@ -62,26 +58,26 @@ HAT_WEIGHT = 0.5 * HAT_WEIGHT * (1.0 - HAT_POINT)
 @compiled
 def clausen(x):
     """Clausen's function Cl2(x) = -int_0^x ln|2 sin(t/2)| dt for any real x, to 1e-15."""
-    if abs(x) > math.pi:  # fmod is exact; TWO_PI_LOW is 2 pi minus the double TWO_PI
+    if abs(x) > math.pi:  # fmod is exact
         rest = np.fmod(x, TWO_PI)
         turns = math.floor((x - rest) / TWO_PI + 0.5)
         if abs(rest) > math.pi:
             turns += 1.0 if rest > 0.0 else -1.0
             rest -= math.copysign(TWO_PI, rest)
-        x = rest - turns * TWO_PI_LOW
+        x = rest - turns * 2.4492935982947064e-16  # 2 pi less the double TWO_PI
     size = abs(x)
     if size == 0.0:
         return 0.0
     total = 0.0
     if size < 2.0:
         square = size * size
-        for k in range(AROUND_ZERO_TERMS - 1, -1, -1):
+        for k in range(13, -1, -1):  # 14 terms are enough below 2
             total = (total + AROUND_ZERO[k]) * square
         value = size * (1.0 - math.log(size) + total)
     else:
         y = math.pi - size
         square = y * y
-        for k in range(AROUND_PI_TERMS - 1, -1, -1):
+        for k in range(AROUND_PI.size - 1, -1, -1):
             total = (total + AROUND_PI[k]) * square
         value = y * (math.log(2.0) - total)
     return math.copysign(value, x)
@@ -228,7 +224,8 @@ def _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
         node = nodes[j]
         sin_node, cos_node = math.sin(0.5 * node), math.cos(0.5 * node)
         real, imag = series[j, 0], series[j, 1]
-        near = math.sin(min(0.5 * FAR * max(h_left[j], h_right[j]), 0.5 * math.pi))
+        longer = max(h_left[j], h_right[j])
+        near = math.sin(min(0.5 * 6.0 * longer, 0.5 * math.pi))  # beyond 6 lengths the series is used
         for i in range(m):  # sine and cosine of half the distance
             sine[i] = sin_seen[i] * cos_node - cos_seen[i] * sin_node
             cosine[i] = cos_seen[i] * cos_node + sin_seen[i] * sin_node

@@ -9,10 +9,6 @@ import numpy as np
 from fastpin.kernels.half_line import least_squares
 from fastpin.runtime.jit import compiled
 
-FIRST, COUNT, DEGREE, DECAYING = range(4)
-"""Columns of windows: nodes that are left out, number of nodes, degree of the polynomial, whether x^(a - 2) is fitted.
-"""
-
 
 @compiled
 def fit(x, values, exponent, turns, windows, series):
@@ -27,6 +23,7 @@ def fit(x, values, exponent, turns, windows, series):
     turns : bool
         Whether a is complex: then the imaginary part of x^a is fitted too.
     windows : ndarray of int, shape (w, 4)
+        Nodes that are left out, number of nodes, degree of the polynomial, whether x^(a - 2) is fitted.
     series : ndarray of complex, shape (4,)
         Output: c0, c1, ..., and zeros.
 
@@ -37,10 +34,10 @@ def fit(x, values, exponent, turns, windows, series):
     """
     best, last = 0.0, 0.0
     for w in range(windows.shape[0]):
-        first, count, degree = windows[w, FIRST], windows[w, COUNT], windows[w, DEGREE]
+        first, count, degree, decaying = windows[w, 0], windows[w, 1], windows[w, 2], windows[w, 3]
         if first + count > x.size:
             continue
-        n = degree + 1 + int(turns) + windows[w, DECAYING]
+        n = degree + 1 + int(turns) + decaying
         columns, wanted, found = np.empty((count, n)), np.empty(count), np.empty(n)
         for i in range(count):
             place = x[first + i]
@@ -49,7 +46,7 @@ def fit(x, values, exponent, turns, windows, series):
                 columns[i, k] = place ** (exponent.real + k) * (math.cos(turn) if turns else 1.0)
             if turns:
                 columns[i, degree + 1] = place**exponent.real * math.sin(turn)
-            if windows[w, DECAYING]:
+            if decaying:
                 columns[i, n - 1] = place ** (exponent.real - 2.0)
             wanted[i] = values[first + i]
         error = least_squares(columns, wanted, found)

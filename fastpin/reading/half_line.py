@@ -223,7 +223,7 @@ class Tries:
     Attributes
     ----------
     rows : ndarray of int, shape (t, 5)
-        Values, degree and ends of each fit, see :data:`fastpin.kernels.half_line.FIRST`.
+        Values, degree and ends of each fit, see :func:`fastpin.kernels.half_line.end_places`.
     ends : ndarray, shape (e, 5)
         The ends of all fits, see :data:`fastpin.kernels.half_line.TABLE`.
     tables : ndarray

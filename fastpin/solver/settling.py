@@ -37,10 +37,10 @@ def lemke(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray | None:
     if k > MOST_VARIABLES:
         return None
     z = np.zeros(k)
-    code = complementarity.lemke(
+    solved = complementarity.lemke(
         matrix, vector, np.ones(k), 20 * k + 100, np.empty((k, 2 * k + 2)), np.empty(k, dtype=np.int64), z
     )
-    return z if code == complementarity.SOLVED else None
+    return z if solved else None
 
 
 def settle(
