@@ -69,18 +69,6 @@ MOST_ENTRY = 1e9
 MOST_BYTES = 10_000_000
 """Most bytes of a file."""
 
-MOST_OUTLINE = 1_000_000
-"""Most characters of an outline."""
-
-MOST_NAMED = 4
-"""Most singular places that are named."""
-
-FARTHEST = 100.0
-"""Radius of the nearest other edge that is looked for, at most, in radii of the hole."""
-
-NEAREST_PART = 0.25
-"""Part of the way from the hole to the nearest other edge on which the harmonics give the stress to six digits."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Compliance(PlateBody):
@@ -415,8 +403,8 @@ class Compliance(PlateBody):
         if not self.outline:
             return "near the hole only"
         places, apart = self._inside.singular * radius, self._inside.apart * radius
-        named = ", ".join(f"[{length(z.real)}, {length(z.imag)}]" for z in places[:MOST_NAMED].tolist())
-        more = f" and {len(places) - MOST_NAMED} more" if len(places) > MOST_NAMED else ""
+        named = ", ".join(f"[{length(z.real)}, {length(z.imag)}]" for z in places[:4].tolist())
+        more = f" and {len(places) - 4} more" if len(places) > 4 else ""
         return f"apart from {length(apart)} about sharp corners and ends of supports: {named}{more}" if named else ""
 
     @property
@@ -446,14 +434,16 @@ class Compliance(PlateBody):
             from fastpin import lugs
 
             return lugs.lug_of(self).nearest
+        farthest = 100.0  # a farther edge is not looked for
+        part = 0.25  # on this part of the way to the nearest other edge the harmonics give the stress to six digits
         size = np.abs(self.matrix).max(axis=1)[6:].reshape(-1, 4).max(axis=1)  # of the harmonics 2 to K
         size = np.maximum.accumulate(size[::-1])[::-1]  # in a symmetric plate some harmonics vanish
         if size[0] == 0.0:
-            return 1.0 + NEAREST_PART * (FARTHEST - 1.0)
+            return 1.0 + part * (farthest - 1.0)
         small = np.flatnonzero(size < 1e-6 * size[0])  # far enough below the second one to tell how fast they fall
         last = int(small[0]) if small.size else size.size - 1  # later ones may be noise
-        nearest = float(size[last] / size[0]) ** (-0.5 / max(last, 1)) if size[last] > 0.0 else FARTHEST
-        return 1.0 + NEAREST_PART * (min(nearest, FARTHEST) - 1.0)
+        nearest = float(size[last] / size[0]) ** (-0.5 / max(last, 1)) if size[last] > 0.0 else farthest
+        return 1.0 + part * (min(nearest, farthest) - 1.0)
 
     def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
         """The smooth field, which leaves the hole free of traction: near the hole (T48), or by its outline (T59)."""
@@ -495,12 +485,13 @@ class Compliance(PlateBody):
 
 
 def _check_json(outline: str) -> None:
+    most = 1_000_000  # characters
     try:
-        is_table = len(outline) <= MOST_OUTLINE and isinstance(json.loads(outline), dict)
+        is_table = len(outline) <= most and isinstance(json.loads(outline), dict)
     except (ValueError, RecursionError):
         is_table = False
     if not is_table:
-        raise InputError("outline", f"must be a JSON text of Lug.document with at most {MOST_OUTLINE:,} characters")
+        raise InputError("outline", f"must be a JSON text of Lug.document with at most {most:,} characters")
 
 
 def _thermal_stress(rim: Rim, rise: float) -> float:

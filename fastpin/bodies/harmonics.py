@@ -23,23 +23,14 @@ import numpy as np
 HELD, FREE = "held", "free"
 """The two kinds of the other rim."""
 
-ETA = {"uniform": 0.0, "normal": 1.0, "half": 1.0, "shear": -1.0}
-"""The ratio t_1/conj t_-1 on the other rim, by the name of the distribution of the force."""
-
-SMALLEST = 3e-17
-"""Harmonics below this part of the first ones are left out."""
-
 FEWEST = 4
 """Least number of harmonics."""
-
-SERIES_BELOW, SERIES_TERMS = 2.0, 16
-"""Argument n L below which sinh(nL) - n sinh(L) is summed by its series, and the terms of the series."""
 
 
 def harmonics_needed(ratio: float) -> int:
     """The highest harmonic that matters, for a wall with the ratio of its smaller to its larger radius, below 1."""
     square, order = ratio * ratio, FEWEST
-    while order * order * square ** (order - 1) > SMALLEST:
+    while order * order * square ** (order - 1) > 3e-17:  # in parts of the first harmonics
         order = int(1.05 * order) + 1
     return order
 
@@ -75,13 +66,13 @@ def _determinant(n: np.ndarray, ratio: float, s: float, first: np.ndarray, secon
     if s != -1.0:
         return (s + q**first) * (1.0 + s * q**second) + (n * n - 1.0) * wall * wall * q ** (n - 1.0)
     length = -math.log(ratio)
-    small = n * length < SERIES_BELOW
+    small = n * length < 2.0  # there sinh(nL) - n sinh(L) is summed by its series
     scale = np.exp(-n * length)
     of_n, of_one = -0.5 * np.expm1(-2.0 * n * length), scale * math.sinh(length)
     excess = of_n - n * of_one
     m = n[small]
     excess[small], term = 0.0, m * length
-    for k in range(1, SERIES_TERMS):
+    for k in range(1, 16):
         term = term * (m * length) ** 2 / (2 * k * (2 * k + 1))
         excess[small] += scale[small] * term * (1.0 - m ** (-2.0 * k))
     return -4.0 * excess * (of_n + n * of_one)
@@ -178,7 +169,8 @@ def first(other: float, kolosov: float, load: str) -> First:
             return First(k, both - D, D, L, none)
         A = (both / q - L) / (q * (k + 1.0 / q / q))
         return First(k, A, both - A, L, none)
-    far = 0.5 * (ETA[load] * m + 2.0 * L)
+    ratio = {"uniform": 0.0, "normal": 1.0, "half": 1.0, "shear": -1.0}[load]  # t_1/conj t_-1 on the other rim
+    far = 0.5 * (ratio * m + 2.0 * L)
     if other < 1.0:
         D = q * (far - q * both) / (1.0 - q * q)
         return First(k, both - D, D, L, none)

@@ -12,9 +12,6 @@ import numpy as np
 from fastpin.kernels import cauchy, conjugate
 from fastpin.runtime.threads import in_chunks
 
-LEAF = 8
-"""Linear pieces in a leaf of the tree of blocks."""
-
 GAUSS = 24
 """Gauss points a piece for the moments. Their integrands go up to the power 28, also where a leaf is one long piece."""
 
@@ -75,12 +72,12 @@ class Tractions:
     def tree(self) -> tuple[np.ndarray | int, ...]:
         """The blocks of the linear pieces with their moments, for :func:`fastpin.kernels.cauchy.cauchy`.
 
-        They are leaves of :data:`LEAF` pieces, then pairs of neighbours, up to one root.
+        They are leaves of 8 pieces, then pairs of neighbours, up to one root.
         """
         if not self.patches:
             moments = np.zeros((0, 2, cauchy.TERMS), complex)
             return np.zeros((0, 3)), 0, np.zeros((0, 4), np.int64), np.zeros(0, complex), np.zeros(0), moments
-        nodes, leaves = np.concatenate(self.patches), _leaves(self.patches, LEAF)
+        nodes, leaves = np.concatenate(self.patches), _leaves(self.patches, 8)
         turn, count = len(nodes) - 1 if self.all_round else 0, 2 * len(leaves) - 1
         blocks = np.full((count, 4), -1)
         blocks[: len(leaves), :2] = leaves

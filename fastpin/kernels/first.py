@@ -14,6 +14,9 @@ from fastpin.kernels import cauchy, conjugate, power_laws
 from fastpin.kernels.half_line import end_places, evaluate, least_squares, match, series, solve, value_errors
 from fastpin.runtime import beside
 
+MODULE = __name__
+"""The module that a second process runs."""
+
 
 def kernels() -> list[tuple[Any, ...]]:
     """Kernels, each before arguments of the types of a first run.

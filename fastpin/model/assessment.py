@@ -49,9 +49,6 @@ SPECTRA = ("history", "cycle")
 MOST_LIFE = 1e18
 """Most passes of a spectrum, and most cycles at a knee: no test has gone as far."""
 
-MOST_PART = 0.999999
-"""Largest reliability and confidence: no test has shown the tail of a scatter as far."""
-
 
 @dataclass(frozen=True)
 class FatigueAssessment:
@@ -131,7 +128,8 @@ class FatigueAssessment:
         set_fields(self, knee=checked_knee(self.small_cycles, self.knee))
         check_fields(self, true_or_false, "straight", optional=True)
         check_fields(self, number, "life", 1.0, MOST_LIFE, optional=True)
-        check_fields(self, number, "reliability confidence", 0.5, MOST_PART, optional=True)
+        # No test has shown the tail of a scatter beyond the largest reliability and confidence.
+        check_fields(self, number, "reliability confidence", 0.5, 0.999999, optional=True)
         if self.reliability is not None and self.criteria != ("stress-life",):
             raise InputError("reliability", f'needs criterion = "stress-life", not {as_toml(list(self.criteria))}')
         if self.confidence is not None and self.reliability is None:

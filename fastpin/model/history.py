@@ -34,9 +34,6 @@ from fastpin.model.loads import LOAD_KIND, LOADS, Corner, check_corner, load_ind
 from fastpin.model.problem import checked_thickness
 from fastpin.model.synonyms import explains_keywords
 
-POINTS = 24
-"""Default number of corners in a cycle of loads that are out of phase."""
-
 MAX_CORNERS = 100_000_000
 """Corners of a history, at most."""
 
@@ -249,7 +246,7 @@ class LoadHistory:
             Number of cycles. The first corner is the point t = 0. Every cycle ends at this point.
         points : int, optional
             Corners of a cycle, 2 to :data:`MOST_POINTS`. If all phases are 0 or 180 degrees the default is 2: the two
-            extremes, between which all loads are proportional. Otherwise the default is :data:`POINTS`, and the path is
+            extremes, between which all loads are proportional. Otherwise the default is 24, and the path is
             a polygon inscribed in the ellipse.
         """
         count = whole_number("count", count, 1)
@@ -261,7 +258,7 @@ class LoadHistory:
             if name not in amplitude:
                 raise InputError("phase", f"{name} has a phase but no amplitude")
         if points is None:
-            points = 2 if all(angle % 180.0 == 0.0 for angle in phase.values()) else POINTS
+            points = 2 if all(angle % 180.0 == 0.0 for angle in phase.values()) else 24
         points = whole_number("points", points, 2, MOST_POINTS)
 
         def corner(turn: float) -> dict[str, float]:

@@ -33,18 +33,12 @@ from fastpin.model.ply import Ply
 MOST_PLIES = 1_000
 """Most plies of a laminate. A thousand of the usual plies are 125 mm thick."""
 
-LONGEST = 10_000
-"""Most characters of a layup: more than the longest text of :data:`MOST_PLIES` angles needs."""
-
 MOST_ANGLE = 360.0
 """Largest angle of a ply, deg: the limit of all angles in degrees."""
 
 _ANGLE = re.compile(r"(?P<sign>\+/?-|-/?\+|±|∓|[+-]|)(?P<size>\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)", re.ASCII)
 _COUNT = re.compile(r"_?(\d+)", re.ASCII)
 _SUFFIX = re.compile(r"(?P<count>_?\d+)?_?(?P<letter>[sStT])?$", re.ASCII)
-
-_SIGNS = {"": (1.0,), "+": (1.0,), "-": (-1.0,), "±": (1.0, -1.0), "∓": (-1.0, 1.0)}
-"""The signs of the plies of an angle, by the first sign of the text. Two signs are "±" or "∓"."""
 
 
 def parsed_layup(field: str, text: str) -> tuple[float, ...]:
@@ -62,8 +56,9 @@ def parsed_layup(field: str, text: str) -> tuple[float, ...]:
     InputError
         If the text is no layup, or has more than :data:`MOST_PLIES` plies. The message shows the place of the fault.
     """
-    if len(text) > LONGEST:
-        raise InputError(field, f"must have at most {LONGEST:,} characters, not {len(text):,}")
+    most = 10_000  # more than the longest text of MOST_PLIES angles needs
+    if len(text) > most:
+        raise InputError(field, f"must have at most {most:,} characters, not {len(text):,}")
     return tuple(_LayupReader(field, text).stack())
 
 
@@ -129,7 +124,8 @@ class _LayupReader:
         if size > MOST_ANGLE:
             self._refuse(f"must be an angle of at most {MOST_ANGLE:g} degrees")
         self._at = match.end()
-        signs = _SIGNS[sign if len(sign) < 2 else "±" if sign[0] == "+" else "∓"]
+        kind = sign if len(sign) < 2 else "±" if sign[0] == "+" else "∓"
+        signs = {"": (1.0,), "+": (1.0,), "-": (-1.0,), "±": (1.0, -1.0), "∓": (-1.0, 1.0)}[kind]
         return [each * size + 0.0 for each in signs]  # -0 becomes 0
 
     def _repeated(self, found: list[float], count: str | None) -> list[float]:

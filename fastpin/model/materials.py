@@ -52,9 +52,6 @@ MOST_RATIO = 1e30
 LEAST_BETA_STAR, MOST_BETA_STAR = 1e-40, 1e40
 """Limits of a given composite compliance, 1/Pa. The moduli then keep within their own limits."""
 
-LEAST_SQUEEZE = 1e-11
-"""Least compliance of a pair under uniform pressure, in parts of beta*. A smaller compliance is rounding."""
-
 
 def checked_expansion(field: str, value: object) -> float:
     """Check a coefficient of thermal expansion, 1/K, and return it as a float."""

@@ -31,7 +31,7 @@ from fastpin.model.checks import (
     whole_number,
 )
 from fastpin.model.fields import FIELDS
-from fastpin.model.materials import LEAST_SQUEEZE, MOST_EXPANSION, MaterialPair
+from fastpin.model.materials import MOST_EXPANSION, MaterialPair
 from fastpin.model.profile import NO_GAP, InitialGap, Profile, ProfileLike, is_pair, widest_place
 from fastpin.model.profile_terms import Term
 from fastpin.model.synonyms import explains_attributes, explains_keywords
@@ -384,7 +384,7 @@ class Problem:
     @property
     def is_incompressible(self) -> bool:
         """Whether uniform pressure changes neither the pin nor the hole."""
-        return self.joint.uniform_compliance <= LEAST_SQUEEZE * self.surfaces.beta_star
+        return self.joint.uniform_compliance <= 1e-11 * self.surfaces.beta_star  # a smaller one is rounding
 
     @property
     def held(self) -> bool:

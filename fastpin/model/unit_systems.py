@@ -69,8 +69,6 @@ _CUSTOMARY = (
     {"psi": Measure("psi", 0, POUND / INCH**2), "ksi": Measure("ksi", 3, POUND / INCH**2)},
 )
 
-_EXAMPLES = '"SI", or a length, a force and a stress, such as "mm, N, MPa" or "in, lbf, ksi"'
-
 
 def checked_system(field: str, value: object) -> str:
     """Check a system of units, and return its name: "SI", or its length, force and stress, joined by commas.
@@ -93,7 +91,8 @@ def checked_system(field: str, value: object) -> str:
         return ", ".join(measure.name for measure in chosen)
     if _chosen(words, tuple({**a, **b} for a, b in zip(_METRIC, _CUSTOMARY, strict=True))):
         raise InputError(field, f"must not mix metric and US customary units, as {as_toml(value)} does")
-    raise InputError(field, f"must be {_EXAMPLES}, not {as_toml(value)}")
+    examples = '"SI", or a length, a force and a stress, such as "mm, N, MPa" or "in, lbf, ksi"'
+    raise InputError(field, f"must be {examples}, not {as_toml(value)}")
 
 
 def is_system(value: object) -> bool:

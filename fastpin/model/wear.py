@@ -25,6 +25,9 @@ from fastpin.model.profile import Profile, ProfileLike
 MOST_CYCLES = 10**12
 """Cycles, at most."""
 
+COEFFICIENTS = ("coefficient", "pin", "plate")
+"""The fields of :class:`Wear` that are coefficients."""
+
 
 @dataclass(frozen=True)
 class Wear:
@@ -69,7 +72,7 @@ class Wear:
             raise InputError("coefficient", "give the wear coefficient, or those of pin and plate")
         if self.coefficient is not None and (self.pin is not None or self.plate is not None):
             raise InputError("coefficient", "is that of both bodies together; give it, or those of pin and plate")
-        for name in ("coefficient", "pin", "plate"):
+        for name in COEFFICIENTS:
             if (given := getattr(self, name)) is not None:
                 profile = Profile.of(name, given)
                 four_a_degree = np.linspace(-np.pi, np.pi, 1441)
@@ -125,9 +128,6 @@ def cycles_text(count: float) -> str:
     """A number of cycles as text: "1 cycle", "100,000 cycles"."""
     return f"{count:,.15g} cycle{'s' * (count != 1)}"
 
-
-COEFFICIENTS = ("coefficient", "pin", "plate")
-"""The fields that are coefficients."""
 
 WEAR_KEYS = tuple(field.name for field in fields(Wear))
 """The fields of :class:`Wear`, the keys of [wear] in a case file."""

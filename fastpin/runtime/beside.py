@@ -11,8 +11,6 @@ from pathlib import Path
 
 from fastpin.runtime.threads import cores
 
-CODE = "import runpy, sys; sys.path.append(sys.argv[1]); runpy.run_module(sys.argv[2], run_name='__main__')"
-
 module: str | None = None
 """The module that the second process runs, as soon as this one compiles a kernel and stores it. None: no process."""
 
@@ -25,7 +23,8 @@ def start() -> int | None:
     """
     if module is None or cores() < 2 or not sys.executable:
         return None
-    words = [sys.executable, "-P", "-c", CODE, str(Path(__file__).parents[2]), module]
+    code = "import runpy, sys; sys.path.append(sys.argv[1]); runpy.run_module(sys.argv[2], run_name='__main__')"
+    words = [sys.executable, "-P", "-c", code, str(Path(__file__).parents[2]), module]
     with contextlib.suppress(OSError):
         reading, _ = os.pipe()  # the other end stays open, and no other program inherits it
         silent = [(os.POSIX_SPAWN_OPEN, number, os.devnull, os.O_WRONLY, 0) for number in (1, 2)]

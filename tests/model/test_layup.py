@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fastpin.errors import InputError
-from fastpin.model.layup import LONGEST, MOST_PLIES, checked_angles, layup_text, parsed_layup
+from fastpin.model.layup import MOST_PLIES, checked_angles, layup_text, parsed_layup
 from tests.support.refusals import refused
 
 
@@ -63,7 +63,7 @@ def test_a_layup_is_read(text: str, angles: list[float]) -> None:
         ("[0_501]s", "must have at most 1,000 plies"),
         ("[(((0_100)_100)_100)_100]", "must have at most 1,000 plies"),
         ("[" + "(" * 3_000, "must have at most 20 parentheses in one another at position 22 of"),
-        ("[0" + "/0" * LONGEST + "]", "must have at most 10,000 characters, not 20,003"),
+        ("[0" + "/0" * 10_000 + "]", "must have at most 10,000 characters, not 20,003"),
         ("[" + "0/" * 100 + "y", 'must be an angle at position 202 of "...0/0/0/0/0/0/0/0/0/0/0/0/0/0/0/y"'),
     ],
 )
