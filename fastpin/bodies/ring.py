@@ -132,17 +132,13 @@ class Ring(PlateBody):
         stiff = kolosov - 1.0 + 2.0 * q if self.held else -2.0 * ((1.0 - 1.0 / far) * (1.0 + 1.0 / far))
         amplitudes.add_uniform(q * t[0, 0].real / stiff)
         if self.held:
-            self._add_thermal_stress(rim, remote[-1], amplitudes)
+            if remote[-1] and rim.material.expansion:  # the traction that keeps the rim in place
+                strain = rim.material.expansion * remote[-1]
+                stiff = 0.5 * rim.compliance * (kolosov - 1.0 + 2.0 * far**-2.0)
+                amplitudes.add_uniform(-strain / stiff)
         else:
             self._add_rim_stress(rim, remote, amplitudes)
         return self._add_half_support(rim, force_on(t), amplitudes) if self.support == "half" else ()
-
-    def _add_thermal_stress(self, rim: Rim, rise: float, amplitudes: Amplitudes) -> None:
-        """Add the field of the traction that keeps a held rim in place when the temperature rises."""
-        if rise and rim.material.expansion:
-            strain = rim.material.expansion * rise
-            stiff = 0.5 * rim.compliance * (rim.kolosov - 1.0 + 2.0 * self.far(rim) ** -2.0)
-            amplitudes.add_uniform(-strain / stiff)
 
     def _add_rim_stress(self, rim: Rim, remote: Remote, amplitudes: Amplitudes) -> None:
         """Add the field of a ring whose outer rim carries the tractions of a remote stress."""

@@ -177,7 +177,15 @@ class Grid:
 
     @cached_property
     def _trig_moments(self) -> tuple[np.ndarray, np.ndarray]:
-        left, right = _half_hat_moments(np.array(self.halves))
+        # int_0^h (1 - t/h) exp(-+ i t) dt = (h/2) sinc(h/2)^2 -+ i (1 - sin(h)/h) of the left and right halves
+        length = np.array(self.halves)
+        even = 0.5 * length * np.sinc(0.5 * length / math.pi) ** 2
+        series, square = np.zeros_like(length), length**2  # of 1 - sin(h)/h: no digits are lost where h is small
+        for k in range(8, 0, -1):
+            series = square / (2.0 * k * (2.0 * k + 1.0)) * (1.0 - series)
+        odd = np.where(length > 0.5, 1.0 - np.sinc(length / math.pi), series)
+        odd[0] *= -1.0
+        left, right = even + 1j * odd
         total = (left + right) * np.exp(1j * self.theta)
         total.setflags(write=False)
         return total.real, total.imag
@@ -213,21 +221,6 @@ def _graded_counts(places: Sequence[tuple[float, float]]) -> tuple[np.ndarray, n
         spacing = np.minimum(spacing, np.maximum(width, 2.0 * np.abs(angle_between(theta, angle))))
     density = 1.0 / spacing
     return theta, np.r_[0.0, np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(theta))]
-
-
-def _half_hat_moments(length: np.ndarray) -> np.ndarray:
-    """int_0^h (1 - t/h) exp(i sense t) dt = (h/2) sinc(h/2)^2 + i sense (1 - sin(h)/h), for lengths h >= 0, (2, n).
-
-    The sense of the left halves, the first row, is -1; that of the right ones is 1.
-    """
-    even = 0.5 * length * np.sinc(0.5 * length / math.pi) ** 2
-    series = np.zeros_like(length)  # series of 1 - sin(h)/h: no digits are lost where h is small
-    square = length**2
-    for k in range(8, 0, -1):
-        series = square / (2.0 * k * (2.0 * k + 1.0)) * (1.0 - series)
-    odd = np.where(length > 0.5, 1.0 - np.sinc(length / math.pi), series)
-    odd[0] *= -1.0
-    return even + 1j * odd
 
 
 def halved(grid: Grid, direction: float | None) -> Grid:
