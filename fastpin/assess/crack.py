@@ -15,8 +15,8 @@ from fastpin.assess.outputs import Curve, Follow, Output, chosen, kept, or_null,
 from fastpin.cracks.fates import CRACK_FATES, CrackFate
 from fastpin.errors import InputError
 from fastpin.model import Case, LoadHistory, Problem, angles, points
-from fastpin.model.case import questions_of
-from fastpin.model.crack import CRACK_KEYS, CrackGrowth, edge_name, law_of, mouth_words
+from fastpin.model.case import BESIDE, questions_of
+from fastpin.model.crack import CrackGrowth, edge_name, law_of, mouth_words
 from fastpin.model.doubts import doubts_given
 from fastpin.model.growth import KnownLaw, Nasgro, Walker, law_entries
 from fastpin.model.keys import LAW
@@ -228,7 +228,7 @@ QUESTION = outputs.Question(
     failed="no crack is followed",
     margin_names=("fracture", "growth"),
     unvaried="no run of a sweep grows a crack",
-    keys=CRACK_KEYS,
+    keys=BESIDE["crack"].keys,
     outcomes={
         name: (output, grown)
         for name, output in {

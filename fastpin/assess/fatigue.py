@@ -17,7 +17,8 @@ from fastpin.damage.spectrum import SpectrumCycles, bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.model import Case, Problem
 from fastpin.model.angles import from_bottom
-from fastpin.model.assessment import ASSESSMENT_KEYS, DISTANCES, MINER_RULES, SPECTRA, FatigueAssessment
+from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA, FatigueAssessment
+from fastpin.model.case import BESIDE
 from fastpin.model.doubts import doubts_given
 from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.points import BODIES, EDGES, Body, edge_body, elastic_bodies, material_of, owner_of
@@ -242,7 +243,7 @@ QUESTION = outputs.Question(
     failed="",  # is not needed: the damage holds the reason
     margin_names=("fatigue",),
     unvaried="changes no run of a sweep",
-    keys=ASSESSMENT_KEYS,
+    keys=BESIDE["fatigue"].keys,
     outcomes={
         **{
             name: (output, worst_damage)

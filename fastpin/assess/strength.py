@@ -15,10 +15,11 @@ from fastpin.damage.laminates import MODES
 from fastpin.damage.margins import strength_margins
 from fastpin.errors import InputError
 from fastpin.model import Case, LoadHistory, Problem, angles, checks
+from fastpin.model.case import BESIDE
 from fastpin.model.doubts import doubts_given
 from fastpin.model.loads import LOAD_KIND, Corner
 from fastpin.model.ply import CRITERION_NAMES, PlyCriterion
-from fastpin.model.strength import LENGTHS, STRENGTH_KEYS, StrengthAssessment
+from fastpin.model.strength import LENGTHS, StrengthAssessment
 from fastpin.model.units import printed_loads, units
 from fastpin.solver.errors import ConvergenceError, SolveError
 from fastpin.states.quantities import load_point
@@ -195,7 +196,7 @@ QUESTION = outputs.Question(
     failed="no strength is assessed",
     margin_names=("ply",),
     unvaried="changes no run of a sweep",
-    keys=STRENGTH_KEYS[:-1],
+    keys=BESIDE["strength"].keys[:-1],
     outcomes={name: (output, worst_state) for name, output in outputs.chosen(PLACE, ("ratio", "angle")).items()}
     | {"factor": (outputs.Output("factor"), _load_at_failure)},
     find=find,

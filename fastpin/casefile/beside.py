@@ -7,10 +7,11 @@ from typing import Any
 
 from fastpin.casefile.materials import read_law
 from fastpin.casefile.toml_text import CaseText, Section
-from fastpin.model.assessment import ASSESSMENT_KEYS, MINER_RULES, FatigueAssessment
-from fastpin.model.crack import CRACK_KEYS, CrackGrowth, crack_from
+from fastpin.model.assessment import MINER_RULES, FatigueAssessment
+from fastpin.model.case import BESIDE
+from fastpin.model.crack import CrackGrowth, crack_from
 from fastpin.model.growth import Walker
-from fastpin.model.strength import LENGTHS, STRENGTH_KEYS, StrengthAssessment
+from fastpin.model.strength import LENGTHS, StrengthAssessment
 from fastpin.model.units import measures_of
 
 
@@ -26,9 +27,9 @@ def read_assessment(
     for chooser, partner in (("method", "length"), ("small_cycles", "knee")):
         if chooser in section:
             values.pop(partner, None)
-    values |= {key: section.value(key) for key in ASSESSMENT_KEYS if section.value(key) is not None}
-    usual = FatigueAssessment()
-    harmless = {key: getattr(usual, key) for key in ASSESSMENT_KEYS}
+    keys, usual = BESIDE["fatigue"].keys, FatigueAssessment()
+    values |= {key: section.value(key) for key in keys if section.value(key) is not None}
+    harmless = {key: getattr(usual, key) for key in keys}
     if values.get("length") is not None:
         harmless["method"] = "line"  # a wrong method leaves its length unreported, as a wrong rule its knee
     if values.get("reliability") is not None:
@@ -42,7 +43,7 @@ def read_assessment(
 
 def read_crack(source: CaseText, section: Section, default: Mapping[str, Any] | None = None) -> CrackGrowth | None:
     """How a crack grows; None if a key is wrong (reported). `default`: values of keys that the section leaves out."""
-    values = {**(default or {}), **{key: section.value(key) for key in CRACK_KEYS if key in section}}
+    values = {**(default or {}), **{key: section.value(key) for key in BESIDE["crack"].keys if key in section}}
     faults = len(source.placed)
     if section.value("law") is not None:
         values["law"] = read_law(source, section, "law") or Walker(1.0, 1.0)
@@ -74,7 +75,7 @@ def read_strength(
     values, faults = dict(default or {}), len(source.placed)
     if any(name in section for name in LENGTHS):
         values = {name: value for name, value in values.items() if name not in LENGTHS}
-    values |= {key: section.value(key) for key in STRENGTH_KEYS if key in section}
+    values |= {key: section.value(key) for key in BESIDE["strength"].keys if key in section}
     harmless: dict[str, Any] = {"criterion": "hashin", "failure": False}
     pair = sum(values.get(name) is not None for name in LENGTHS[1:])
     if pair == 2:

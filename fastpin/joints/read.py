@@ -19,7 +19,8 @@ from fastpin.joints.parts import REMOTE_NAMES, Joint, JointPin, JointPlate, tate
 from fastpin.joints.result import check_fatigue
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
 from fastpin.lugs.outline import Part, rectangle
-from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment
+from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.case import BESIDE
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
 from fastpin.model.keys import ANY, JOINT
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
@@ -32,7 +33,7 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves"),
     "pin": ("name", "at", *MATERIAL_KEYS, "diameter", "plates", "clearance", "friction", "flexibility"),
     "load": (),
-    "fatigue": ASSESSMENT_KEYS,
+    "fatigue": BESIDE["fatigue"].keys,
 }
 """Sections of a joint file and their keys. The keys of [[load]] are the loads of the joint."""
 

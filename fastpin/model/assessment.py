@@ -292,8 +292,5 @@ def _as_lists(value: Any) -> Any:
     return [_as_lists(each) for each in value] if isinstance(value, tuple) else value
 
 
-ASSESSMENT_KEYS = tuple(field.name for field in fields(FatigueAssessment))
-"""The fields of :class:`FatigueAssessment`, the keys of [fatigue] in a case file."""
-
 USUAL = FatigueAssessment()
 """Median lives by Smith, Watson and Topper, without a knee."""

@@ -12,14 +12,14 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
 from fastpin.errors import InputError
-from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import as_toml, check_fields, choice, instance, string
-from fastpin.model.crack import CRACK_KEYS, CrackGrowth, check_crack, crack_from
+from fastpin.model.crack import CrackGrowth, check_crack, crack_from
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
-from fastpin.model.strength import STRENGTH_KEYS, StrengthAssessment, check_strength
+from fastpin.model.strength import StrengthAssessment, check_strength
 from fastpin.model.wear import Wear
 
 
@@ -41,8 +41,6 @@ class Beside(NamedTuple):
     check : callable or None
         Called with the problem and a value. It raises :class:`InputError` if both do not fit. None for the fatigue: it
         is checked with the history, by the reader of case files and by the assessment itself.
-    keys : tuple of str
-        All keys of the entries.
     """
 
     kind: type
@@ -51,21 +49,24 @@ class Beside(NamedTuple):
     read: Callable[..., Any]
     written: Callable[[Any], dict[str, Any]]
     check: Callable[[Problem, Any], None] | None
-    keys: tuple[str, ...]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All keys of the entries: the fields of the class."""
+        return tuple(each.name for each in fields(self.kind))
 
 
 BESIDE = {
     "fatigue": Beside(
         FatigueAssessment, "a FatigueAssessment", FatigueAssessment.stored, FatigueAssessment,
-        FatigueAssessment.written, None, ASSESSMENT_KEYS,
+        FatigueAssessment.written, None,
     ),
     "crack": Beside(
         CrackGrowth, "a fastpin.model.CrackGrowth", CrackGrowth.entries, crack_from, CrackGrowth.entries, check_crack,
-        CRACK_KEYS,
     ),
     "strength": Beside(
         StrengthAssessment, "a fastpin.model.StrengthAssessment", StrengthAssessment.entries, StrengthAssessment,
-        StrengthAssessment.entries, check_strength, STRENGTH_KEYS,
+        StrengthAssessment.entries, check_strength,
     ),
 }  # fmt: skip
 """The sections by their names in case files, which are fields of :class:`fastpin.model.Case`."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -217,10 +217,6 @@ def law_of(problem: Problem, crack: CrackGrowth) -> KnownLaw:
         words = f"the material of the {owner_of(problem, body)} has no constants of crack growth"
         raise InputError("law", f"is missing: {words}, and none are given")
     return law
-
-
-CRACK_KEYS = tuple(each.name for each in fields(CrackGrowth))
-"""The fields of :class:`CrackGrowth`, the keys of [crack] in a case file."""
 
 
 def crack_from(**given: Any) -> CrackGrowth:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from fastpin.errors import InputError
@@ -57,10 +57,6 @@ class StrengthAssessment:
     def entries(self) -> dict[str, Any]:
         """The keys and values of the section [strength] of a case file."""
         return {"criterion": self.criterion} | self.lengths | ({"failure": True} if self.failure else {})
-
-
-STRENGTH_KEYS = tuple(each.name for each in fields(StrengthAssessment))
-"""The fields of :class:`StrengthAssessment`, the keys of [strength] in a case file."""
 
 
 def checked_lengths(distance: float | None, tension: float | None, compression: float | None) -> dict[str, float]:
