@@ -16,7 +16,7 @@ from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.lugs.outline import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
 from fastpin.model.checks import as_toml, choice, file_path, number, positive, string, whole_number
-from fastpin.model.keys import LUG
+from fastpin.model.keys import of
 from fastpin.model.materials import MATERIALS, PLANES
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
 
@@ -33,6 +33,14 @@ LUG_KEYS: dict[str, tuple[str, ...]] = {
     "solve": ("harmonics",),
 }
 """Sections of a lug file and their keys."""
+
+_KINDS = {
+    "plate": of("length", "hole_radius", "net_section"),
+    "outline": of("length", "x", "y", "start", "origin", "tolerance"),
+    "part": of("length", "to", "through", "at"),
+    "hole": of("length", "centre", "radius"),
+}
+"""The kinds of the keys. The loads are parts of the stress of a case."""
 
 BLOCKS = ("part", "hole", "support", "load")
 """Sections that may appear several times."""
@@ -84,7 +92,7 @@ def parse_lug(text: str, name: str = "lug file", folder: str | Path = ".") -> Lu
 
 
 def _lug_file(source: CaseText, folder: Path) -> LugFile | None:
-    source.to_si(LUG, False)
+    source.to_si(_KINDS, False)
     source.check_sections(LUG_KEYS, BLOCKS)
     title = source.root.checked("title", string) or ""
     plate = source.section("plate", required=True)

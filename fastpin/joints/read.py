@@ -22,7 +22,7 @@ from fastpin.lugs.outline import Part, rectangle
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import BESIDE
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
-from fastpin.model.keys import ANY, JOINT
+from fastpin.model.keys import ANY, CASE, ITSELF, MATERIAL, of
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
 
 JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8")
@@ -36,6 +36,15 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "fatigue": BESIDE["fatigue"].keys,
 }
 """Sections of a joint file and their keys. The keys of [[load]] are the loads of the joint."""
+
+_KINDS: dict[str, Any] = {
+    "plate": MATERIAL | of("length", "thickness", "x", "y", "start") | {"parts": of("length", "to", "through")},
+    "pin": MATERIAL
+    | of("length", "at", "diameter")
+    | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility"},
+    "fatigue": CASE["fatigue"],
+}
+"""The kinds of the keys, apart from those of the loads."""
 
 MOST_CORNERS = 10_000
 """Most corners of a load history. Each state of ten pins takes a megabyte."""
@@ -90,7 +99,7 @@ def parse_joint(text: str, name: str = "joint file") -> JointFile:
 def _joint_file(source: CaseText) -> JointFile | None:
     names = [name for block in source.blocks("load") for name in block.table]
     stresses = [name for name in names if name.rpartition(".")[2] in REMOTE_NAMES]
-    source.to_si(JOINT | {"load": {ANY: "force", **dict.fromkeys(stresses, "traction")}}, True)
+    source.to_si(_KINDS | {"load": {ANY: "force", **dict.fromkeys(stresses, "traction")}}, True)
     source.check_sections(_KEYS, ("plate", "pin", "load"))
     title, settings = source.root.checked("title", string) or "", source.section("joint")
     plane = settings.choice("plane", ("stress", *(word for word in PLANES if word != "stress")))

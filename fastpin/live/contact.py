@@ -27,7 +27,7 @@ from fastpin.model.doubts import doubts
 from fastpin.model.options import ALL_ROUND, SolveOptions
 from fastpin.model.profile import CALLED
 from fastpin.model.unit_systems import SI
-from fastpin.model.units import FIXED_PREFIXES, units
+from fastpin.model.units import units
 from fastpin.report.case import profile_words
 from fastpin.sessions import Session
 from fastpin.solver import ConvergenceError, SolveError
@@ -401,10 +401,12 @@ def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer
     """A problem as the page needs it: units, sizes and shapes of the bodies, loads and controls."""
     lug, bush = problem.plate_body.lug, problem.plate_body.bush
     around = angles.angle_at(np.arange(CALLED) * (360.0 / CALLED) - 180.0)  # from -180 degrees from the bottom on
+    # A choice of prefixes for all sizes of values, by its name: a power of ten for each unit. 1 kN mm is 1 N m.
+    prefixes = {"kN, mm": {"N": 3, "N/m": 3, "N m": 0, "J": 0, "J/m": 0, "m": -3, "Pa": 6}}
     return {
         "title": title,
         "units": {kind: asdict(unit) for kind, unit in units(problem).items()},
-        "prefixes": FIXED_PREFIXES if problem.unit_system == SI and not problem.dimensionless else {},
+        "prefixes": prefixes if problem.unit_system == SI and not problem.dimensionless else {},
         "dimensionless": problem.dimensionless,
         "friction": problem.most_friction,
         "radius": problem.hole_radius,

@@ -9,7 +9,8 @@ from dataclasses import asdict, replace
 from typing import Any
 
 from fastpin.bodies.body import MOST_DRY, Control, PlateBody
-from fastpin.bodies.kinds import PIN_CONTROLS, PLATE_CONTROLS, SOLID_PIN, TITLES, changed_pin, changed_plate
+from fastpin.bodies.kinds import PINS, PLATES, SOLID_PIN
+from fastpin.bodies.pins import Tube
 from fastpin.errors import InputError
 from fastpin.model import InitialGap, Laminate, Problem, Profile, angles, checks, loads, synonyms
 from fastpin.model.acting import check_loads
@@ -31,6 +32,15 @@ usual force."""
 
 GAPS = ("hole", "pin")
 """The bodies whose initial gaps have controls."""
+
+TITLES = {kind: made.title for kind, made in PLATES.items() if made.title}
+"""The kinds of plates that can be chosen, with their names on the page."""
+
+PIN_CONTROLS = tuple(dict.fromkeys(name for made in PINS.values() for name in made.controlled))
+"""Names of the controls of pins."""
+
+PLATE_CONTROLS = tuple(dict.fromkeys(name for made in PLATES.values() for name in made.controlled))
+"""Names of the controls of plates. They are names of fields."""
 
 FRICTION_ALONG = {"case": "as in the case", "uniform": "uniform"}
 """The choices of the friction along the rim, where that of the case varies."""
@@ -165,7 +175,9 @@ def changed_fields(problem: Problem, changes: Mapping[str, Any], scales: Control
             changes.get("plane", problem.pair.plane),
         )
     if changes.keys() & PIN_CONTROLS:
-        fields["pin_body"] = changed_pin(problem.pin_body, changes)
+        bore = checks.number("pin_bore", changes.get("pin_bore", problem.pin_body.bore_radius))
+        load = changes.get("bore_load", problem.pin_body.load or "uniform")
+        fields["pin_body"] = Tube(bore, load) if bore else SOLID_PIN
         if fields["pin_body"] != SOLID_PIN:
             fields["pin_load"] = "centre"  # the load of a hollow pin is a field of its body
     if changes.keys() & {"plate_body", *PLATE_CONTROLS, *_names_of_material("bush")}:
@@ -345,7 +357,10 @@ def _changed_plate(problem: Problem, changes: Mapping[str, Any]) -> PlateBody:
     values = {name: changes[name] for name in ("plate_body", *PLATE_CONTROLS) if name in changes}
     if body.bush is not None and changes.keys() & set(_names_of_material("bush")):
         values["material"] = _changed_material(body.bush.material, "bush", changes)
-    return changed_plate(body, values, problem.hole_radius, problem.pair.plate)
+    if body.kind not in TITLES:
+        raise InputError("plate_body", f"the {body.kind} of a finite plate can't be changed on the page")
+    kind = checks.choice("plate_body", values.pop("plate_body", body.kind), tuple(TITLES))
+    return body.changed(values) if kind == body.kind else PLATES[kind].usual(problem.hole_radius, problem.pair.plate)
 
 
 def vector_axes(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:

@@ -22,27 +22,28 @@ KeyKinds = str | Mapping[str, Any]
 """The kind of a number and of all numbers in a list, or the kinds of the keys of a table."""
 
 
-def _of(kind: str, *keys: str) -> dict[str, str]:
+def of(kind: str, *keys: str) -> dict[str, str]:
+    """Return the kinds of keys of one kind."""
     return dict.fromkeys(keys, kind)
 
 
-LAW = _of("stress intensity", "threshold_range", "toughness", "unit") | {
+LAW = of("stress intensity", "threshold_range", "toughness", "unit") | {
     "C": "crack growth", "intrinsic_length": "length"
 }  # fmt: skip
 """Constants of a law of crack growth."""
 
-FATIGUE = _of(
+FATIGUE = of(
     "traction", "fatigue_strength", "shear_fatigue_strength", "yield_strength", "bending_limit", "torsion_limit",
     "limit_range", "curve_c",
 ) | {"threshold_range": "stress intensity", "wear_coefficient": "wear coefficient"}  # fmt: skip
 """Fatigue constants. The constant curve_a counts with the unit of stress, see :func:`converted`."""
 
-PLY = _of("modulus", "E1", "E2", "G12") | _of("traction", "Xt", "Xc", "Yt", "Yc", "S") | {"thickness": "length"}
+PLY = of("modulus", "E1", "E2", "G12") | of("traction", "Xt", "Xc", "Yt", "Yc", "S") | {"thickness": "length"}
 """Numbers of a ply."""
 
 MATERIAL = (
-    _of("modulus", "E", "E1", "E2", "G12")
-    | _of("traction", "yield_strength", "ultimate_strength")
+    of("modulus", "E", "E1", "E2", "G12")
+    | of("traction", "yield_strength", "ultimate_strength")
     | {"compliance": "compliance", "fatigue": FATIGUE, "growth": LAW, "ply": PLY}
 )
 """Numbers of a material or a laminate."""
@@ -54,7 +55,7 @@ RESIDUAL = {ITSELF: "traction", ROW: ("length", "traction")}
 
 def profile(kind: str) -> dict[str, str]:
     """Return the kinds of a profile along the rim: of its numbers, and of the keys of its terms."""
-    return _of(
+    return of(
         kind, ITSELF, "constant", "ellipse", "size", "cosine", "sine", "flat", "crown", "zone", "values"
     )  # fmt: skip
 
@@ -67,35 +68,15 @@ CASE: dict[str, Any] = {
     "gap": {"hole": profile("displacement"), "pin": profile("displacement")},
     "pin_body": {"bore_radius": "length"},
     "plate_body": MATERIAL
-    | _of("length", "outer_radius", "ring_outer_radius", "reaction")
+    | of("length", "outer_radius", "ring_outer_radius", "reaction")
     | {"interference": "displacement"},
     "load": LOAD_KIND | {"mean": LOAD_KIND, "amplitude": LOAD_KIND},
     "wear": {key: profile("wear coefficient") for key in ("coefficient", "pin", "plate")},
     "fatigue": {"length": "length", "residual_stress": RESIDUAL},
-    "crack": _of("length", "first", "last", "place") | {"law": LAW, "residual_stress": RESIDUAL},
-    "strength": _of("length", "distance", "tension", "compression"),
+    "crack": of("length", "first", "last", "place") | {"law": LAW, "residual_stress": RESIDUAL},
+    "strength": of("length", "distance", "tension", "compression"),
 }  # fmt: skip
 """The kinds of a case file by section and key. A key that is not here has no unit."""
-
-OUTCOMES = {ANY: CASE["wear"] | CASE["fatigue"] | CASE["crack"] | CASE["strength"]}
-"""The kinds of the outcomes of a plan, which may have keys of these sections."""
-
-LUG: dict[str, Any] = {
-    "plate": _of("length", "hole_radius", "net_section"),
-    "outline": _of("length", "x", "y", "start", "origin", "tolerance"),
-    "part": _of("length", "to", "through", "at"),
-    "hole": _of("length", "centre", "radius"),
-}
-"""The kinds of a lug file. Its loads are parts of the stress of a case."""
-
-JOINT: dict[str, Any] = {
-    "plate": MATERIAL | _of("length", "thickness", "x", "y", "start") | {"parts": _of("length", "to", "through")},
-    "pin": MATERIAL
-    | _of("length", "at", "diameter")
-    | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility"},
-    "fatigue": CASE["fatigue"],
-}
-"""The kinds of a joint file, apart from its loads."""
 
 
 def kind_of(field: str) -> str:

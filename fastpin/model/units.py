@@ -78,12 +78,6 @@ _WITH_PREFIX = frozenset(
 )
 """Units that may get an SI prefix."""
 
-FIXED_PREFIXES = {"kN, mm": {"N": 3, "N/m": 3, "N m": 0, "J": 0, "J/m": 0, "m": -3, "Pa": 6}}
-"""Choices of prefixes that do not depend on the size of a value: a power of ten for each unit, by the choice's name.
-
-1 kN mm is 1 N m and 1 J.
-"""
-
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
 
 

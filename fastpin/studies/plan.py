@@ -36,7 +36,7 @@ from fastpin.casefile.toml_text import (
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model import LOADS, Case, checks
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
-from fastpin.model.keys import OUTCOMES
+from fastpin.model.keys import ANY, CASE
 from fastpin.model.synonyms import closest
 from fastpin.model.unit_systems import checked_system
 from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
@@ -360,7 +360,8 @@ def base_case(source: CaseText, folder: Path) -> BaseCase | None:
             base = BaseCase(EXAMPLE, "built-in case", folder, units or "")
         else:
             base = BaseCase(read_text(folder / name), name, (folder / name).parent, units or "")
-        source.to_si({"outcomes": OUTCOMES}, base.is_whole, base.text.root.table.get("units"))
+        kinds = {ANY: CASE["wear"] | CASE["fatigue"] | CASE["crack"] | CASE["strength"]}
+        source.to_si({"outcomes": kinds}, base.is_whole, base.text.root.table.get("units"))
         return base
     except CaseFileError as error:
         for line, message in error.problems:
