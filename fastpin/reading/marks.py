@@ -8,7 +8,9 @@ time at which it is read.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -26,27 +28,22 @@ class MarkedPlace:
 
     Parameters
     ----------
-    corner : _Corner
-        The corner at which it was marked.
-    node, inwards : int
-        Its outermost node, and the direction into its stick zone, 1 or -1.
+    find : callable
+        It finds the place from the nodal values of a corner.
+    depth : int
+        Number of corners whose nodal values are kept until then.
     """
 
-    __slots__ = ("_corner", "_inwards", "_node", "_value")
+    __slots__ = ("_find", "_value", "depth")
 
-    def __init__(self, corner: _Corner, node: int, inwards: int) -> None:
-        self._corner: _Corner | None = corner
-        self._node, self._inwards, self._value = node, inwards, math.nan
-
-    @property
-    def depth(self) -> int:
-        """Number of corners whose nodal values are kept for this place."""
-        return 0 if self._corner is None else self._corner.depth
+    def __init__(self, find: Callable[[], float], depth: int) -> None:
+        self._find: Callable[[], float] | None = find
+        self.depth, self._value = depth, math.nan
 
     def read(self) -> float:
         """The place."""
-        if self._corner is not None:
-            self._value, self._corner = self._corner.place(self._node, self._inwards), None
+        if self._find is not None:
+            self._value, self._find, self.depth = self._find(), None, 0
         return self._value
 
 
@@ -118,24 +115,48 @@ class Marks:
         """
         fresh: dict[int, int] = {}
         places: dict[int, MarkedPlace | float] = {}
-        corner: _Corner | None = None
+        find = partial(self._place, problem, grid, friction, tractions, status)
+        depth = 1 + max((place.depth for place in self._places.values() if isinstance(place, MarkedPlace)), default=0)
         for node, inwards, sign in present_borders(status, grid.closed):
             fresh[node] = fresh.get(node, 0) | BITS[inwards, sign]
             if sign:
-                corner = corner or _Corner(problem, grid, friction, tractions, status, self, 1 + self.depth)
-                place = MarkedPlace(corner, node, inwards)
+                place = MarkedPlace(partial(find, node, inwards), depth)
                 # The places of 64 corners may follow from each other. Then they are read, and their values given free.
-                places[node] = place.read() if corner.depth > 64 else place
+                places[node] = place.read() if depth > 64 else place
         if not fresh:
             return self
         bits = self._bits | {node: mark | self._bits.get(node, 0) for node, mark in fresh.items()}
         places = {node: place for node, place in self._places.items() if node not in fresh} | places
         return Marks(bits, {node: place for node, place in places.items() if not is_ambiguous(bits[node])})
 
-    @property
-    def depth(self) -> int:
-        """Largest number of corners whose nodal values are kept for a place."""
-        return max((place.depth for place in self._places.values() if isinstance(place, MarkedPlace)), default=0)
+    def _place(
+        self,
+        problem: Problem,
+        grid: Grid,
+        friction: np.ndarray,
+        tractions: tuple[np.ndarray, np.ndarray],
+        status: np.ndarray,
+        node: int,
+        inwards: int,
+    ) -> float:
+        """The place of the border at a sticking `node`; NaN if the node or the one beyond it carries no shear.
+
+        The zone lies in the direction `inwards`, 1 or -1. The other arguments are those of :meth:`with_borders`.
+        """
+        (pressure, shear), n = tractions, status.size
+        bound = friction * pressure
+        sticking = truly_sticking(status, bound - np.abs(shear))
+        sign = float(np.sign(shear[(node - inwards) % n])) if sticking[node] else 0.0
+        if sign == 0.0:
+            return math.nan
+        nodes = node + inwards * np.arange(min(MOST_VALUES, n))
+        nodes = nodes % n if grid.closed else nodes[(nodes >= 0) & (nodes < n)]
+        slipping = np.flatnonzero(~sticking[nodes])
+        zone = nodes[: slipping[0]] if slipping.size else nodes
+        cusps = self.near(zone[: MOST_VALUES // 2].tolist(), inwards)
+        coupling = Coupling.of(problem, friction[[node]], grid.theta[[node]])
+        line = half_line(0.5 - float(coupling.tilt[int(sign), 0]) * sign * inwards, float(coupling.beta[0]))
+        return end_place(bound[zone] - sign * shear[zone], line, cusps)
 
     def near(self, nodes: list[int], inwards: int) -> list[OldBorder]:
         """The marked borders at some neighbouring `nodes`, which lie `inwards` from the first one, in their order.
@@ -164,47 +185,3 @@ def _known(place: MarkedPlace | float) -> float | None:
     """A place as a number; None if it is unknown."""
     value = place.read() if isinstance(place, MarkedPlace) else place
     return None if math.isnan(value) else value
-
-
-class _Corner(NamedTuple):
-    """The nodal values of a corner, from which the places of its borders are read.
-
-    Attributes
-    ----------
-    problem : Problem
-    grid : Grid
-    friction : ndarray, shape (n,)
-        Coefficient of friction at each node.
-    tractions : (ndarray, ndarray)
-        Pressure and shear, shape (n,).
-    status : ndarray, shape (n,)
-    older : Marks
-        The old borders.
-    depth : int
-        Number of corners whose nodal values are kept for a place of this one.
-    """
-
-    problem: Problem
-    grid: Grid
-    friction: np.ndarray
-    tractions: tuple[np.ndarray, np.ndarray]
-    status: np.ndarray
-    older: Marks
-    depth: int
-
-    def place(self, node: int, inwards: int) -> float:
-        """The place of the border at a sticking `node`; NaN if the node or the one beyond it carries no shear."""
-        (pressure, shear), n = self.tractions, self.status.size
-        bound = self.friction * pressure
-        sticking = truly_sticking(self.status, bound - np.abs(shear))
-        sign = float(np.sign(shear[(node - inwards) % n])) if sticking[node] else 0.0
-        if sign == 0.0:
-            return math.nan
-        nodes = node + inwards * np.arange(min(MOST_VALUES, n))
-        nodes = nodes % n if self.grid.closed else nodes[(nodes >= 0) & (nodes < n)]
-        slipping = np.flatnonzero(~sticking[nodes])
-        zone = nodes[: slipping[0]] if slipping.size else nodes
-        cusps = self.older.near(zone[: MOST_VALUES // 2].tolist(), inwards)
-        coupling = Coupling.of(self.problem, self.friction[[node]], self.grid.theta[[node]])
-        line = half_line(0.5 - float(coupling.tilt[int(sign), 0]) * sign * inwards, float(coupling.beta[0]))
-        return end_place(bound[zone] - sign * shear[zone], line, cusps)
