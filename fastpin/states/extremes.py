@@ -12,13 +12,12 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Literal, NamedTuple, Protocol
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from fastpin.errors import InputWarning, ReadingError, reading
 from fastpin.model.doubts import are_given, are_loads_plausible, yield_doubt
-from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE, TEMPERATURE
 from fastpin.model.problem import Problem
@@ -116,8 +115,10 @@ class Found(dict[tuple[str, Side], Extreme]):
         self.unread: dict[str, ReadingError] = {}
 
 
-class Kept(Protocol):
-    """All kept states of a result. Few of them are read as a whole.
+class KeptStates:
+    """The kept states of a result, at least one, all of one problem and on one grid. Few of them are read as a whole.
+
+    These are in memory. Those of a file are a subclass, :class:`fastpin.storage.stored_states.StoredStates`.
 
     Attributes
     ----------
@@ -126,20 +127,6 @@ class Kept(Protocol):
     points : ndarray, shape (states,)
         Load points.
     """
-
-    problem: Problem
-    grid: Grid
-    points: np.ndarray
-
-    def blocks(self) -> Iterator[StateBlock]:
-        """Give the nodal values of all states, in order."""
-
-    def read(self, places: Sequence[int]) -> list[State]:
-        """Read the states at these places, in increasing order."""
-
-
-class KeptStates:
-    """States in memory as :class:`Kept`. All are of one problem and on one grid; there is at least one."""
 
     def __init__(self, states: Sequence[State]) -> None:
         self.problem, self.grid = states[0].problem, states[0].grid
@@ -152,7 +139,7 @@ class KeptStates:
             yield _block_of(self._states[begin : begin + AT_ONCE])
 
     def read(self, places: Sequence[int]) -> list[State]:
-        """Read the states at these places."""
+        """Read the states at these places, in increasing order."""
         return [self._states[place] for place in places]
 
 
@@ -174,7 +161,7 @@ def _block_of(states: Sequence[State]) -> StateBlock:
     )
 
 
-def all_extremes(kept: Kept) -> dict[str, Extremes]:
+def all_extremes(kept: KeptStates) -> dict[str, Extremes]:
     """Find the extremes of all quantities that the states have; see :meth:`fastpin.Result.extremes`."""
     sides: tuple[Side, Side] = ("smallest", "largest")
     found = find_extremes(kept, [(name, side) for name in READINGS for side in sides])
@@ -184,12 +171,12 @@ def all_extremes(kept: Kept) -> dict[str, Extremes]:
     return {name: Extremes(*(found[name, side] for side in sides)) for name in names}
 
 
-def marked_extremes(kept: Kept) -> Found:
+def marked_extremes(kept: KeptStates) -> Found:
     """Find the extremes of :data:`MARKS`."""
     return find_extremes(kept, MARKS)
 
 
-def yield_extremes(kept: Kept) -> Found:
+def yield_extremes(kept: KeptStates) -> Found:
     """Find the largest von Mises stress of each body that may yield.
 
     Left out is a body without a known strength, and one that is far from it in the states of the largest tractions and
@@ -285,14 +272,14 @@ def yield_doubts_of(problem: Problem, history: LoadHistory, states: Sequence[Sta
     return yield_doubts(problem, history, lambda: yield_extremes(kept), kept.read)
 
 
-def find_extremes(kept: Kept, wanted: Iterable[tuple[str, Side]]) -> Found:
+def find_extremes(kept: KeptStates, wanted: Iterable[tuple[str, Side]]) -> Found:
     """Find extremes by quantity and side. Those that the problem does not have are left out.
 
     A quantity that can't be read does not hide the others.
 
     A place that has the same tractions and loads as an earlier one is not read.
     """
-    wanted, found = [pair for pair in wanted if exists(kept.problem, pair[0])], Found()
+    wanted, found = [pair for pair in wanted if READINGS[pair[0]].exists(kept.problem)], Found()
     if not wanted or not kept.points.size:
         return found
     try:
@@ -311,11 +298,6 @@ def find_extremes(kept: Kept, wanted: Iterable[tuple[str, Side]]) -> Found:
     return found
 
 
-def exists(problem: Problem, name: str) -> bool:
-    """Whether the states of a problem have a quantity."""
-    return READINGS[name].exists(problem)
-
-
 def marked_places(extremes: Mapping[tuple[str, Side], Extreme]) -> dict[int, str]:
     """Return the places of the extremes of :data:`MARKS` with words on each, in order."""
     words: dict[int, list[str]] = {}
@@ -329,12 +311,12 @@ class Different:
 
     Parameters
     ----------
-    kept : Kept
+    kept : KeptStates
     names : set of str
         The quantities that will be asked for.
     """
 
-    def __init__(self, kept: Kept, names: set[str]) -> None:
+    def __init__(self, kept: KeptStates, names: set[str]) -> None:
         self._kept = kept
         first: dict[bytes, int] = {}
         numbers: dict[str, list[np.ndarray]] = {name: [] for name in (*NUMBERS, "seat_slip") if name in names}

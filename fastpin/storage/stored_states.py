@@ -16,7 +16,7 @@ from fastpin.model.loads import named_load
 from fastpin.reading.marks import Marks
 from fastpin.reading.peaks import peak_slips
 from fastpin.states import extremes
-from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Kept
+from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, KeptStates
 from fastpin.states.reading_bounds import NUMBERS, StateBlock
 from fastpin.states.state import State
 from fastpin.storage import hdf5, layout
@@ -117,8 +117,8 @@ def _states_of(
     return states
 
 
-class StoredStates:
-    """The states of an open file, see :class:`fastpin.states.extremes.Kept`."""
+class StoredStates(KeptStates):
+    """The states of an open file."""
 
     def __init__(self, file: h5py.File) -> None:
         self.problem, self.grid, self._file = layout.read_problem(file), layout.read_grid(file), file
@@ -161,13 +161,13 @@ def _block_of(rows: layout.Rows, loads: np.ndarray, marks: list[str]) -> StateBl
     return StateBlock(rows["pressure"], rows["shear"], rows["status"], loads, *more)
 
 
-def read_extremes(file: h5py.File, find: Callable[[Kept], Found] = extremes.marked_extremes) -> Found:
+def read_extremes(file: h5py.File, find: Callable[[KeptStates], Found] = extremes.marked_extremes) -> Found:
     """Return the extremes of all states of a file: those that it names, or those that are found."""
     kept = StoredStates(file)
     return _stored(file, kept) or find(kept)
 
 
-def write_extremes(file: h5py.File, kept: Kept | None = None) -> None:
+def write_extremes(file: h5py.File, kept: KeptStates | None = None) -> None:
     """Write the extremes of a complete result with many states to its file. `kept` has the states of the file."""
     size = layout.count(file["states"])
     if size < LEAST_STORED:
@@ -196,7 +196,7 @@ def _stored(file: hdf5.Group, kept: StoredStates) -> Found | None:
         names = [text_of(name) for name in group.attrs["names"]]
         places = dataset_of(group, "place", np.int64, ())[()].tolist()
         values = dataset_of(group, "value", float, ())[()].tolist()
-        wanted = {" ".join(pair): pair for pair in MARKS if extremes.exists(kept.problem, pair[0])}
+        wanted = {" ".join(pair): pair for pair in MARKS if READINGS[pair[0]].exists(kept.problem)}
         if set(names) != set(wanted) or not all(0 <= place < kept.points.size for place in places):
             return None
         found = Found()

@@ -87,7 +87,7 @@ def test_extremes_are_the_readings_of_all_states(result: Result) -> None:
 
 
 def check_bounds(result: Result) -> None:
-    names = {name for name in READINGS if extremes.exists(result.problem, name)} - {"seat_slip", *NUMBERS}
+    names = {name for name in READINGS if READINGS[name].exists(result.problem)} - {"seat_slip", *NUMBERS}
     bounds = reading_bounds.Bounds(result.problem, result.grid, names)
     for block in KeptStates(result.states).blocks():
         bounds.add(block, list(range(len(block.pressure))))
@@ -123,7 +123,7 @@ def test_few_states_are_read(readings: list[str]) -> None:
     corners = [{"P": 3e6 if k == 17 else 1e6 + 1e4 * k} for k in range(40)]
     joint = replace(JOINTS["bush"], pair=MaterialPair(replace(STEEL, yield_strength=3e8), MATERIALS["7075-T6"]))
     found = marked_extremes(KeptStates(fastpin.solve(joint, corners, nodes=61).states))
-    assert found.keys() == {pair for pair in MARKS if extremes.exists(joint, pair[0])}
+    assert found.keys() == {pair for pair in MARKS if READINGS[pair[0]].exists(joint)}
     assert {pair[0] for pair, extreme in found.items() if extreme.place != 17} <= {"von_mises_bush"}
     assert max(readings.count(name) for name in readings) <= 3
 
