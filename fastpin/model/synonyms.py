@@ -218,10 +218,22 @@ _KEYWORDS: dict[str, tuple[str, ...]] = {}
 
 def explains_keywords(made: T) -> T:
     """Make a class or function name the meant keyword in the :class:`TypeError` of an unknown one."""
+    function: Any = getattr(made, "__init__") if isinstance(made, type) else made  # noqa: B009 - for mypy
+    name, code = made.__name__, function.__code__  # type: ignore[attr-defined]
+    known = frozenset(code.co_varnames[: code.co_argcount + code.co_kwonlyargcount])
+    _KEYWORDS[name] = tuple(word for word in code.co_varnames if word in known - {"self", "cls"})
+
+    @functools.wraps(function)
+    def explaining(*arguments: Any, **keywords: Any) -> Any:
+        for word in keywords:
+            if word not in known:
+                raise unknown_keyword(name, word, _KEYWORDS[name])
+        return function(*arguments, **keywords)
+
     if isinstance(made, type):
-        setattr(made, "__init__", _explaining(made.__name__, getattr(made, "__init__")))  # noqa: B009, B010 - for mypy
+        setattr(made, "__init__", explaining)  # noqa: B010 - for mypy
         return made
-    return _explaining(made.__name__, made)  # type: ignore[attr-defined, arg-type, return-value]
+    return explaining  # type: ignore[return-value]
 
 
 def explains_attributes(of: str = "", others: Callable[[], type] | None = None) -> Callable[[type[T]], type[T]]:
@@ -253,21 +265,6 @@ def explains_attributes(of: str = "", others: Callable[[], type] | None = None) 
         return made
 
     return explained
-
-
-def _explaining(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-    code = function.__code__
-    known = frozenset(code.co_varnames[: code.co_argcount + code.co_kwonlyargcount])
-    _KEYWORDS[name] = tuple(word for word in code.co_varnames if word in known - {"self", "cls"})
-
-    @functools.wraps(function)
-    def explaining(*arguments: Any, **keywords: Any) -> Any:
-        for word in keywords:
-            if word not in known:
-                raise unknown_keyword(name, word, _KEYWORDS[name])
-        return function(*arguments, **keywords)
-
-    return explaining
 
 
 def unknown_keyword(function: str, word: str, known: Iterable[str]) -> TypeError:
