@@ -168,6 +168,18 @@ def known_name(field: str, name: object, known: Iterable[str]) -> None:
         raise UnknownNameError(error.field, error.reason) from None
 
 
+class Library(dict[str, T]):
+    """Things of one kind by name. An unknown name raises :class:`UnknownNameError`, which says which name is meant."""
+
+    def __init__(self, kind: str, things: Mapping[str, T]) -> None:
+        super().__init__(things)
+        self._kind = kind
+
+    def __missing__(self, name: object) -> T:
+        known_name(self._kind, name, self)
+        raise KeyError(name)
+
+
 def alternatives(words: Sequence[str]) -> str:
     """Return words in quotes with commas, and "or" before the last one."""
     quoted = [f'"{word}"' for word in words]

@@ -20,7 +20,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import check_fields, choice, instance, known_name, number, positive, set_fields, string
+from fastpin.model.checks import Library, check_fields, choice, instance, number, positive, set_fields, string
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import KnownLaw, known_law, law_entries
 from fastpin.model.synonyms import explains_keywords
@@ -222,15 +222,8 @@ class Material:
         return (3.0 - self.nu) / (1.0 + self.nu)
 
 
-class Materials(dict[str, Material]):
-    """Materials by name. An unknown name raises :class:`UnknownNameError`, which says which name is meant."""
-
-    def __missing__(self, name: object) -> Material:
-        known_name("material", name, self)
-        raise KeyError(name)
-
-
-MATERIALS = Materials(
+MATERIALS = Library(
+    "material",
     {
         "Ti-6Al-4V": Material(116e9, 0.32, "Ti-6Al-4V", yield_strength=828e6),
         "aluminium": Material(69e9, 0.33, "aluminium"),
@@ -271,7 +264,7 @@ MATERIALS = Materials(
         "Inconel 718": Material(199.9e9, 0.294, "Inconel 718", yield_strength=1034e6),
         "C93200": Material(100e9, 0.35, "C93200", yield_strength=138e6),
         "PEEK": Material(4.0e9, 0.40, "PEEK", yield_strength=98e6),
-    }
+    },
 )
 """Named materials at room temperature.
 

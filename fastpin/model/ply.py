@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import check_fields, instance, known_name, number, positive, set_fields, string
+from fastpin.model.checks import Library, check_fields, instance, number, positive, set_fields, string
 from fastpin.model.synonyms import explains_keywords
 
 LEAST_MODULUS, MOST_MODULUS = 1e-60, 1e60
@@ -169,18 +169,11 @@ def checked_ratio(first: float, second: float, ratio: object) -> float:
     return value
 
 
-class Plies(dict[str, Ply]):
-    """Plies by name. An unknown name raises :class:`UnknownNameError`, which says which name is meant."""
-
-    def __missing__(self, name: object) -> Ply:
-        known_name("ply", name, self)
-        raise KeyError(name)
-
-
 _JONES = "Jones, Mechanics of Composite Materials, quoted after public programs"
 _WWFE = "Soden, Hinton and Kaddour, Composites Science and Technology 58 (1998), p. 1011, quoted after public programs"
 
-PLIES = Plies(
+PLIES = Library(
+    "ply",
     {
         name: Ply(*elastic, 0.125e-3, PlyStrengths(*strengths), name, source)  # a usual thickness of cured tape
         for name, elastic, strengths, source in (
@@ -190,7 +183,7 @@ PLIES = Plies(
             ("E-glass/MY750", (45.6e9, 16.2e9, 5.83e9, 0.278), (1280e6, 800e6, 40e6, 145e6, 73e6), _WWFE),
             ("T300/5208", (181e9, 10.3e9, 7.17e9, 0.28), (1500e6, 1500e6, 40e6, 246e6, 68e6), _JONES),
         )
-    }
+    },
 )
 """Named plies at room temperature, with typical values and no allowables.
 
