@@ -47,7 +47,6 @@ from fastpin.solver.task import (
     as_history,
     check_options,
     deferred_interrupts,
-    first_followed,
     one_blas_thread,
     reference_force,
 )
@@ -508,7 +507,7 @@ class Session:
         def follow(grid: Grid, strict: bool) -> Run:
             return work(build_system(problem, grid, force), strict)
 
-        return first_followed(task.tries(self._check_request, arcs=lambda: [arc]), follow)
+        return task.follow_on_grids(follow, self._check_request, arcs=lambda: [arc])
 
     def _follow_friction(self, problem: Problem) -> State | None:
         """Follow the change to the friction of another problem at the present load, and return the state."""

@@ -267,11 +267,11 @@ class Run:
         configuration that equals the configuration at the corner, or None.
         """
         step, scales, position = self.corner, self.system.scales, self.position
-        target, before = load / scales.loads, position.now.load
+        after, before = load / scales.loads, position.now.load
         self.target, position.reached = load, 0.0
         self.corner_log.begin_step()
         try:
-            for piece in pieces(before, target, self.system.is_nearly_neat):
+            for piece in pieces(before, after, self.system.is_nearly_neat):
                 self._follow_piece(piece)
             if not inside and self.recorder is not None:
                 check_resolution(self.system, position.now)
@@ -290,7 +290,7 @@ class Run:
                 self._keep(step, 1.0)
         except SolveError as error:
             self.stepper.leave(position)
-            reached = (before + position.reached * (target - before)) * scales.loads
+            reached = (before + position.reached * (after - before)) * scales.loads
             error.step, error.fraction, error.load = step, position.reached, named_load(reached)
             place = named_loads(self.system.problem, error.load)
             where = f"step {step + 1}, at {100.0 * error.fraction:.4g} % ({place})"
@@ -467,31 +467,31 @@ class Run:
         system, now = self.system, self.now
         drive, way = system.drive, now.rest - now.origin
         way[np.isnan(way)] = 0.0
-        moved = drive.position(now.tractions, now.motion, now.load, way[:2])
+        pushed = drive.position(now.tractions, now.motion, now.load, way[:2])
         load = drive.with_reactions(now.motion, now.load)
         if system.problem.held:
             load = load.copy()
             load[M] = moment_that_holds(system, now)
-        heat, named = thermal_energy(system, now), self.target
+        heat, acting = thermal_energy(system, now), self.target
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
         if load is not now.load or fraction < 1.0:
             is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
-            named = np.where(is_given, self.target, load * system.scales.loads)
+            acting = np.where(is_given, self.target, load * system.scales.loads)
         common = {
             "step": step,
             "fraction": fraction,
-            "load": named_load(named),
+            "load": named_load(acting),
             "work": (self.work + now.work - heat) * system.scales.energy,
             "energy": (elastic_energy(system, now, elastic) - heat) * system.scales.energy,
             "residuals": residuals,
         }
-        seat = None
+        inner = None  # the state of the seat, then that of the pin
         for place in reversed(range(len(system.interfaces))):
-            turned = now.motion[system.interfaces[place].motion :][:3].copy()
-            turned[:2] = moved if place == 0 else way[2 * place : 2 * place + 2] + turned[:2]
-            seat = self._state_of(place, common, turned, seat)
-        assert seat is not None
-        return seat
+            moved = now.motion[system.interfaces[place].motion :][:3].copy()
+            moved[:2] = pushed if place == 0 else way[2 * place : 2 * place + 2] + moved[:2]
+            inner = self._state_of(place, common, moved, inner)
+        assert inner is not None
+        return inner
 
     def _state_of(self, place: int, common: dict[str, Any], moved: np.ndarray, seat: State | None) -> State:
         """The state of the interface `place`, with that of the `seat` inside it; `moved` is (dx, dy, rotation)."""

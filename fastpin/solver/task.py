@@ -1,7 +1,7 @@
 """A task is one history to follow: from no load, from a corner, or from the end of another history.
 
-From no load the nodes are chosen by trial, see :meth:`Task.tries`. A run that begins at a corner keeps its nodes. It is
-tried strictly, and then not. A strict run ends where the contact is too narrow for the nodes. Otherwise a contact that
+From no load the nodes are chosen by trial, see :meth:`Task.follow_on_grids`. A run that begins at a corner keeps its
+nodes. It is tried strictly, and then not. A strict run ends where the contact is too narrow. Otherwise a contact that
 carries next to nothing is let go, and a new one begins without memory.
 
 A history is followed with Ctrl-C held back, and with one thread of BLAS: :func:`deferred_interrupts`,
@@ -16,7 +16,7 @@ import logging
 import math
 import signal
 import threading
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, fields, replace
 from types import FrameType
@@ -46,9 +46,6 @@ from fastpin.solver.step import pushes
 log = logging.getLogger(__name__)
 
 Followed = TypeVar("Followed")
-
-Attempts = Generator[tuple[Grid, bool], SolveError, None]
-"""Grids on which a history is tried, and whether strictly. The answer to each is the error with which it ended."""
 
 LEAST_LOAD = 1e-50
 """Least force, or remote stress times R, that is the largest of a history, in parts of R/beta*."""
@@ -117,9 +114,7 @@ class Task:
         with deferred_interrupts() as caught, one_blas_thread():
             progress = self._stoppable_progress(caught)
             chooser = self if unfit is None else replace(self, grid=None)
-            run = first_followed(
-                chooser.tries(progress, unfit), functools.partial(self._follow_on, recorder, progress, None)
-            )
+            run = chooser.follow_on_grids(functools.partial(self._follow_on, recorder, progress, None), progress, unfit)
             if run.statistics["released"]:
                 log.warning(
                     "%d times a narrow contact that carried less than 0.1 %% of the force was let go and lost its "
@@ -127,13 +122,14 @@ class Task:
                     run.statistics["released"],
                 )
 
-    def tries(
+    def follow_on_grids(
         self,
+        follow: Callable[[Grid, bool], Followed],
         progress: RunProgress | None = None,
         unfit: Unfit | None = None,
         arcs: Callable[[], Iterable[Grid]] | None = None,
-    ) -> Attempts:
-        """Yield the grids on which the history is tried, until it is followed from no load to its end.
+    ) -> Followed:
+        """Follow the history on one grid after the other, until it is followed from no load to its end.
 
         1. Equally spaced nodes: those of the user, or nodes on the arc that a coarse run chooses. Wider arcs follow, up
            to the whole circle, if the contact reaches an end.
@@ -143,6 +139,8 @@ class Task:
 
         Parameters
         ----------
+        follow : callable
+            ``follow(grid, strict)`` follows the history on a grid. What it returns is returned.
         progress : callable, optional
             Called during coarse runs.
         unfit : Unfit, optional
@@ -158,22 +156,22 @@ class Task:
         arcs = functools.partial(self.arcs, progress) if arcs is None else arcs
         try:
             if unfit is None:
-                yield from wider_arcs(arcs())
-            elif isinstance(unfit.error, ArcError):
-                yield from wider_arcs(after_grid(unfit.grid, arcs()))
-            else:
-                raise unfit.error
+                return follow_on_arcs(arcs(), follow)
+            if isinstance(unfit.error, ArcError):
+                return follow_on_arcs(after_grid(unfit.grid, arcs()), follow)
+            raise unfit.error
         except ConvergenceError as error:
             if self.options.method != "path":
                 raise
-            lost: SolveError = error
+            lost = error
         for grid in self._graded(progress, unfit):
             log.info("%s: once more with %d nodes that are dense where the contact is narrow", lost, grid.size)
-            lost = yield grid, True
-            if not isinstance(lost, ConvergenceError):
-                raise lost
+            try:
+                return follow(grid, True)
+            except ConvergenceError as error:
+                lost = error
         log.info("%s", lost)
-        yield from wider_arcs(arcs(), strict=False)
+        return follow_on_arcs(arcs(), follow, strict=False)
 
     def arcs(self, progress: RunProgress | None = None) -> Iterator[Grid]:
         """Equally spaced nodes: those of the user, or candidates that grow to the whole circle."""
@@ -259,39 +257,25 @@ class Task:
         return progress
 
 
-def first_followed(tries: Attempts, follow: Callable[[Grid, bool], Followed]) -> Followed:
-    """Follow a history on one grid after the other, until it is followed to its end. Return what `follow` returns.
+def follow_on_arcs(arcs: Iterable[Grid], follow: Callable[[Grid, bool], Followed], strict: bool = True) -> Followed:
+    """Follow a history on one arc after the other, until the contact keeps clear of its ends.
+
+    Returns what ``follow(grid, strict)`` returns.
 
     Raises
     ------
     SolveError
         The error of the last try.
     """
-    attempt = next(tries)
-    while True:
-        try:
-            return follow(*attempt)
-        except SolveError as error:
-            lost = error
-        attempt = tries.send(lost)
-
-
-def wider_arcs(arcs: Iterable[Grid], strict: bool = True) -> Attempts:
-    """Yield one arc after the other, until the contact keeps clear of its ends.
-
-    Raises
-    ------
-    SolveError
-        The error of the last try.
-    """
-    lost: SolveError = ArcError(CUT_OFF)
+    lost = ArcError(CUT_OFF)
     for number, grid in enumerate(arcs):
         if number:
             log.info("the contact reaches an end of the arc: once more on a wider one")
         log.info("%d nodes from %.5g to %.5g rad", grid.size, grid.theta[0], grid.theta[-1])
-        lost = yield grid, strict
-        if not isinstance(lost, ArcError):
-            break
+        try:
+            return follow(grid, strict)
+        except ArcError as error:
+            lost = error
     raise lost
 
 

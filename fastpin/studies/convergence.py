@@ -19,7 +19,7 @@ from fastpin.model.options import Method, SolveOptions
 from fastpin.model.read_only import ReadOnly
 from fastpin.solver import ArcError, Result, SolveError, solve
 from fastpin.solver.arc import first_direction
-from fastpin.solver.task import Task, as_history, first_followed, wider_arcs
+from fastpin.solver.task import Task, as_history, follow_on_arcs
 from fastpin.states.error_bars import PLACE_FLOOR, spacing
 from fastpin.states.quantities import QUANTITIES, ZONES, matching_values, quantity, size, sizes, values
 from fastpin.states.state import State
@@ -323,7 +323,7 @@ class _Work:
         common = math.gcd(*(count - 1 for count in self.counts))
         coarsest = common + 1 if common >= LEAST_NODES - 1 else self.counts[0]
         coarse = replace(self.task, options=self.task.options.changed(nodes=coarsest))
-        arc = first_followed(wider_arcs(coarse.arcs()), self._follow_grids)
+        arc = follow_on_arcs(coarse.arcs(), self._follow_grids)
         for count in self.increments:
             self.increment_results.append(self._solve_grid(arc, self.single, "increment", count))
 

@@ -30,9 +30,8 @@ from fastpin.solver.task import (
     Unfit,
     after_grid,
     deferred_interrupts,
-    first_followed,
+    follow_on_arcs,
     one_blas_thread,
-    wider_arcs,
 )
 from fastpin.wear_lives.fat_cycles import FatCycles, Worn
 from fastpin.wear_lives.wear_path import WearRun
@@ -214,7 +213,7 @@ class WearTask:
                 if unfit is not None and nodes == unfit.grid.size:
                     arcs = after_grid(unfit.grid, arcs)
                 try:
-                    return first_followed(wider_arcs(arcs), on_grid)
+                    return follow_on_arcs(arcs, on_grid)
                 except ResolutionError as narrow:
                     error = narrow
                     log.info("%s", narrow)

@@ -6,7 +6,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import fastpin
 from fastpin import ConvergenceError, Grid, SolveError, SolveOptions
 from fastpin.solver import ArcError, task
-from fastpin.solver.task import Task, Unfit, first_followed, one_blas_thread, wider_arcs
+from fastpin.solver.task import Task, Unfit, follow_on_arcs, one_blas_thread
 
 STEEL = fastpin.MATERIALS["steel"]
 PROBLEM = fastpin.Problem.from_load_parameter(fastpin.MaterialPair(STEEL, STEEL), 0.1, 0.4)
@@ -32,7 +32,7 @@ def order(errors: dict[str, type[SolveError]], grid: Grid | None = None, unfit: 
             raise errors[tried[-1]](tried[-1])
 
     try:
-        first_followed(Task(PROBLEM, [{"P": 1.0}], SolveOptions(**options), grid).tries(unfit=unfit), follow)
+        Task(PROBLEM, [{"P": 1.0}], SolveOptions(**options), grid).follow_on_grids(follow, unfit=unfit)
     except SolveError as error:
         tried.append(f"error of {error}")
     return ", ".join(tried)
@@ -74,7 +74,7 @@ def test_tries_go_on_after_a_grid_that_was_unfit() -> None:
 
 def test_without_an_arc_the_contact_is_cut_off() -> None:
     with pytest.raises(ArcError, match="give a wider one"):
-        first_followed(wider_arcs([]), lambda grid, strict: grid)
+        follow_on_arcs([], lambda grid, strict: grid)
 
 
 @pytest.mark.parametrize("threads", [1, 2])
