@@ -188,10 +188,10 @@ def test_the_extremes_of_a_long_history_are_drawn_and_have_rows() -> None:
     corners = [{"P": 3e6 if k == 77 else 1e6 + 100.0 * k} for k in range(200)]
     source = Source.of_result(fastpin.solve(sample_result().problem, corners, nodes=61))
     words = "largest pressure, largest shear, largest hoop stress, largest von Mises stress of the pin"
-    assert source.marks == {77: words}
-    assert [state.step for state in source.peaks] == [77]
+    assert source.held.marks == {77: words}
+    assert [state.step for state in source.held.peaks] == [77]
     assert [state.step for state in source.drawn][-1] == 199
-    assert dict(zip((state.step for state in source.drawn), source.drawn.marks, strict=True))[77] == source.marks[77]
+    assert dict(zip((state.step for state in source.drawn), source.drawn.marks, strict=True))[77] == words
     states, gaps = source.rows
     assert 77 in [state.step for state in states]
     assert gaps == {20: "57 more", 21: "102 more"}
