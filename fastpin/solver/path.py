@@ -302,7 +302,6 @@ class PathStep:
         self._room = smaller[0]
         configuration, sums = self._checked
         self._take(configuration)
-        self.now.status[:] = configuration.status
         self._queue.sums[:] = sums
         counts = self._queue.counts
         counts[exchange.NEXT] = counts[exchange.QUEUED] = counts[exchange.ROUND] = counts[exchange.SETTLED] = 0
@@ -344,8 +343,8 @@ class PathStep:
 
     def _take(self, better: Configuration) -> None:
         """Continue from better values of the present configuration."""
-        for name in ("pressure", "shear", "gap", "slip", "motion"):
-            getattr(self.now, name)[:] = getattr(better, name)
+        for values, others in zip(self.now.values, better.values, strict=True):
+            values[:] = others
         self.now.slip_tally.sums[:] = better.slip_tally.sums
 
     def _correct(self) -> Correction | None:
