@@ -21,11 +21,22 @@ from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA, FatigueAss
 from fastpin.model.case import BESIDE
 from fastpin.model.doubts import doubts_given
 from fastpin.model.fatigue import LIFE_CONSTANTS
-from fastpin.model.points import BODIES, EDGES, Body, edge_body, elastic_bodies, material_of, owner_of
+from fastpin.model.points import (
+    BODIES,
+    EDGES,
+    Body,
+    edge_body,
+    elastic_bodies,
+    further_parts,
+    has_outline,
+    material_of,
+    owner_of,
+    point_words,
+)
 from fastpin.model.units import units
 from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import over_yield_words
+from fastpin.states.margins import over_yield_words, part_of
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
@@ -79,6 +90,8 @@ DAMAGE = (
     ),
     outputs.Output("angle", "angle", lambda found: found.hot_spot.theta, optional=True),
     outputs.Output("depth", "length", lambda found: found.hot_spot.depth, optional=True),
+    outputs.Output("edge", "text", lambda found: edge_of(found), "edge beyond the hole with the hot spot; or empty"),
+    outputs.Output("place", "text", lambda found: _place(found), "the place in words; empty without damage"),
     outputs.Output("plane", "width", lambda found: found.hot_spot.plane, optional=True),
 )  # fmt: skip
 """Outputs of a :class:`fastpin.damage.SpectrumDamage`: those of its hot spot. The plane's normal counts from +x."""
@@ -163,12 +176,11 @@ def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
     name = f"fatigue of the {edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}"
     if math.isnan(spot.theta):
         return f"{name}: no damage"
-    depth = "" if spot.depth == 0.0 else f", {units(found.problem)['length'].text(spot.depth, 3)} below the edge"
     failing = found.failure_probability(how.life)
     parts = [f"median life {spot.life * 10.0**found.shift:.4g}"] if found.shift else []
     parts += [] if math.isnan(failing) else [f"{failing:.3g} of the specimens fail within {how.life:.6g} {how.passes}"]
     life = ", ".join([f"life {spot.life:.4g} {how.passes}", *parts])
-    parts = [f"{life}, damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}"]
+    parts = [f"{life}, damage {spot.damage:.4g} {_place(found)}"]
     parts += [f"normal of the plane {math.degrees(spot.plane):z.2f} deg from +x"]
     same: dict[frozenset[float], tuple[float, int, str]] = {}  # repeated states have the load points of the first ones
     for start, stop, times, done in zip(counted.start, counted.stop, counted.times, counted.damage, strict=True):
@@ -179,7 +191,26 @@ def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
         for share, times, ends in sorted(same.values(), key=lambda each: -each[0])[:MOST_CYCLES]
         if share >= 0.5
     ]
-    return f"{name}: {', '.join(parts)}; {', '.join(cycles)}"
+    return "; ".join([f"{name}: {', '.join(parts)}", ", ".join(cycles), *_left_out(found)])
+
+
+def edge_of(found: damage.SpectrumDamage | damage.Fatigue) -> str:
+    """Return the name of the further edge of a plate on which the hot spot lies; "" if it lies on none."""
+    (part,) = further_parts(found.problem, found.body, found.hot_spot.theta, found.hot_spot.depth)
+    return "" if part is None else str(part.name)
+
+
+def _place(found: damage.SpectrumDamage | damage.Fatigue) -> str:
+    """Return words for the hot spot."""
+    spot = found.hot_spot
+    return "" if math.isnan(spot.theta) else point_words(found.problem, found.body, spot.theta, spot.depth, 2)
+
+
+def _left_out(found: damage.SpectrumDamage | damage.Fatigue) -> list[str]:
+    """Return words for the places of further edges that are left out."""
+    owner = owner_of(found.problem, found.body)
+    part = part_of(found.problem, owner) if owner == "plate" and has_outline(found.problem) else ""
+    return [part] if part else []
 
 
 class _Body(NamedTuple):
@@ -313,9 +344,10 @@ def spectrum_line(found: damage.SpectrumDamage, over: Mapping[str, float]) -> st
     name = f"fatigue of the {edge} over the whole history as a spectrum, {criterion_title(found.criterion)}"
     if math.isnan(spot.theta):
         return f"{name}: none, no plane has both tension and a changing strain"
-    words = f"life {spot.life:.3g} spectra at {from_bottom(spot.theta):z.2f} deg"
+    words = f"life {spot.life:.3g} spectra {_place(found)}"
     mark = over_yield_words(over, owner_of(found.problem, found.body))
-    return f"{name}: {words}, normal of the plane {np.degrees(spot.plane):z.2f} deg from +x{mark}"
+    plane = f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x"
+    return "; ".join([f"{name}: {words}, {plane}", *_left_out(found)]) + mark
 
 
 def fatigue_bodies(problem: Problem, criterion: str) -> list[Body]:
@@ -341,12 +373,13 @@ def hot_spot_line(found: damage.Fatigue, states: Sequence[State], over: Mapping[
     pressure = max((state.peak_pressure for state in states), default=0.0)
     if spot.parameter <= outputs.ROUNDING * problem.surfaces.beta_star * pressure**2:
         return f"{name}: none, no plane has both tension and a changing strain"
-    parts = [f"{units(problem)['stress times strain'].text(spot.parameter, 4)} at {from_bottom(spot.theta):z.2f} deg"]
+    parts = [f"{units(problem)['stress times strain'].text(spot.parameter, 4)} {_place(found)}"]
     if np.isfinite(spot.plane):
         parts.append(f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x")
     if not np.isnan(spot.life):
         parts.append(f"life {spot.life:.3g} cycles" if np.isfinite(spot.life) else "infinite life")
-    return f"{name}: {', '.join(parts)}{over_yield_words(over, owner_of(problem, found.body))}"
+    words = "; ".join([f"{name}: {', '.join(parts)}", *_left_out(found)])
+    return words + over_yield_words(over, owner_of(problem, found.body))
 
 
 def spectrum_curve(found: damage.SpectrumDamage) -> outputs.Curve:
@@ -377,6 +410,9 @@ def _by_angle(found: damage.Fatigue | damage.SpectrumDamage, columns: dict[str, 
     angles = np.array([from_bottom(angle) for angle in found.theta.ravel().tolist()])
     length = units(found.problem)["length"]
     places = {"angle [deg]": angles, f"depth [{length.name}]": length.factor * found.depth}
+    if has_outline(found.problem):
+        parts = further_parts(found.problem, found.body, found.theta, found.depth)
+        columns = columns | {"edge": np.array(["" if part is None else part.name for part in parts])}
     order = np.argsort(angles, kind="stable")
     return outputs.Curve(
         {"body": found.body}, {name: np.ravel(each)[order] for name, each in (places | columns).items()}

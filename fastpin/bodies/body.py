@@ -343,9 +343,14 @@ class PlateBody(BodyBase):
         return 2.0 * (self.outer_radius - radius)
 
     @property
-    def edge_lines(self) -> list[np.ndarray]:
-        """Lines along the edges of a plate of any outline, complex, in radii of its own hole."""
-        return []
+    def geometry(self) -> Any:
+        """Outline, holes, supports and loads of a plate of any outline, :class:`fastpin.lugs.Lug`; None of others."""
+        return None
+
+    @property
+    def along_edges(self) -> Any:
+        """The hoop stress along the edges of a plate of any outline, :class:`fastpin.lugs.EdgeHoop`; None of others."""
+        return None
 
     def looked_at(self, radius: float, length: InWords) -> str:
         """Where alone a largest stress is looked for, in words; empty if everywhere. The hole has this `radius`, m."""

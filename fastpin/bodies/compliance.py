@@ -378,26 +378,27 @@ class Compliance(PlateBody):
         return bool(self.outline)
 
     def drawing(self, rim: Rim) -> list[Shape]:
-        if not self.outline:
-            return super().drawing(rim)
-        from fastpin import lugs
-
-        return [Shape("outline", rim.ratio, "lug", lugs.lug_of(self))]
+        return [Shape("outline", rim.ratio, "lug", self.geometry)] if self.outline else super().drawing(rim)
 
     def net_section(self, radius: float) -> float:
-        return float(json.loads(self.outline or "{}").get("net_section") or math.inf)
+        return (self.geometry.net_section if self.outline else None) or math.inf
+
+    @property
+    def geometry(self) -> Any:
+        return self._lugs.lug_of(self) if self.outline else None
 
     @property
     def rims(self) -> tuple[np.ndarray, list[str]]:
         return self._inside.rims if self.outline else super().rims
 
     @property
-    def edge_lines(self) -> list[np.ndarray]:
-        if not self.outline:
-            return []
-        from fastpin import lugs
+    def along_edges(self) -> Any:
+        return self._inside.along_edges if self.outline else None
 
-        return [part.at(np.linspace(0.0, 1.0, 41)) / self.hole_radius for part in lugs.lug_of(self).edges]
+    def coefficients(self, rim: Rim, order: int, grid: Grid, tractions: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """As :meth:`_column`, of states with nodal `tractions` (k, 2n), pressure and then shear, and `loads` (k, 4)."""
+        warm = _thermal_stress(rim, 1.0) * loads[:, -1:]
+        return np.hstack([tractions @ _kept_hats(order, grid).T, loads[:, :-1], warm])
 
     def looked_at(self, radius: float, length: InWords) -> str:
         if not self.outline:
@@ -409,19 +410,24 @@ class Compliance(PlateBody):
 
     @property
     def other_edges(self) -> Any:
+        return self._lugs.OtherEdges(self) if self.outline else None
+
+    @property
+    def _lugs(self) -> Any:
+        """The folder :mod:`fastpin.lugs`, which few solutions need."""
         from fastpin import lugs
 
-        return lugs.OtherEdges(self) if self.outline else None
+        return lugs
 
     @property
     def _inside(self) -> Any:
         """The :class:`fastpin.lugs.PlateField` of the outline."""
-        from fastpin import lugs
-
-        return lugs.plate_field(self)
+        return self._lugs.plate_field(self)
 
     def contains(self, z: np.ndarray) -> np.ndarray:
-        return self._inside.contains(z) if self.outline else np.abs(z) <= self.reach * (1.0 + 1e-14)
+        if self.outline:
+            return np.asarray(self.geometry.contains(z * self.hole_radius))
+        return np.abs(z) <= self.reach * (1.0 + 1e-14)
 
     @cached_property
     def reach(self) -> float:
@@ -431,9 +437,7 @@ class Compliance(PlateBody):
         is the radius of the nearest other edge.
         """
         if self.outline:
-            from fastpin import lugs
-
-            return lugs.lug_of(self).nearest
+            return float(self.geometry.nearest)
         farthest = 100.0  # a farther edge is not looked for
         part = 0.25  # on this part of the way to the nearest other edge the harmonics give the stress to six digits
         size = np.abs(self.matrix).max(axis=1)[6:].reshape(-1, 4).max(axis=1)  # of the harmonics 2 to K
@@ -513,10 +517,21 @@ def basis(matrix: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
 
     Rows and columns of the nodes belong to (gap, slip) and (N, T).
     """
-    n = np.arange((len(matrix) - 2) // 4 + 1.0)
-    waves = np.exp(-1j * np.multiply.outer(grid.theta, n))
-    hats = fourier.hat_moments(n, *grid.halves) * waves / math.pi
-    return _in_basis(waves), _in_basis(hats).T
+    order = (len(matrix) - 2) // 4
+    return _in_basis(_waves(order, grid)), _hats(order, grid)
+
+
+def _waves(order: int, grid: Grid) -> np.ndarray:
+    return np.asarray(np.exp(-1j * np.multiply.outer(grid.theta, np.arange(order + 1.0))))
+
+
+def _hats(order: int, grid: Grid) -> np.ndarray:
+    """The coefficients of hats, shape (2 + 4 K, 2n)."""
+    moments = fourier.hat_moments(np.arange(order + 1.0), *grid.halves)
+    return _in_basis(moments * _waves(order, grid) / math.pi).T
+
+
+_kept_hats = functools.lru_cache(maxsize=2)(_hats)  # the states of a history ask for the same ones
 
 
 def _in_basis(waves: np.ndarray) -> np.ndarray:

@@ -16,8 +16,8 @@ import numpy as np
 from fastpin.casefile.toml_text import Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.lugs.drawings import from_dxf, from_svg, loops, polygon
-from fastpin.lugs.fitting import FittedArc, circle_of, fitted, is_corner, kinks
-from fastpin.lugs.outline import Hole, Part, crossing, distances, point_text
+from fastpin.lugs.fitting import FittedArc, circle_of, fitted, is_corner
+from fastpin.lugs.outline import Hole, Part, crossing, distances, encloses, kinks, point_text
 from fastpin.model.checks import as_toml, number, string
 from fastpin.tables.columns import CsvColumn, title_and_unit
 from fastpin.tables.load_units import Basis, LoadUnit, load_unit, plain_unit
@@ -143,7 +143,7 @@ def _chosen(parts: list[Part], same: float, holes: Sequence[Hole], frame: _Frame
         known = [Hole("", 0j, frame.radius), *holes]
         if any(abs(centre - hole.centre) < near > abs(size - hole.radius) for hole in known):
             continue
-        if abs(sum(float(part.turn_round(np.zeros(1))[0]) for part in loop)) > math.pi:
+        if encloses(loop, np.zeros(1))[0]:
             outlines.append((outline, fits, len(loop)))
         elif size == math.inf:
             words = f"of {len(outline)} lines and arcs at {frame.text(outline[0].start)}; further holes are circles"
@@ -181,7 +181,7 @@ def _named(outline: tuple[Part, ...], fits: Sequence[FittedArc], count: int, fra
             f"{frame.text(centre)}, {degrees[0] + 0.0:g} to {degrees[1] + 0.0:g} deg, within "
             f"{fit.deviation / frame.unit:.1g}"
         )
-    turns = kinks(outline)
+    turns = [turn for turn, *_ in kinks(outline)]
     if turns:
         notes.append(
             f"{len(turns)} corners turn by at most {math.degrees(max(turns)):.2g} deg, and no arc fits: the stress on "

@@ -25,11 +25,10 @@ from fastpin.model.acting import check_keep
 from fastpin.model.case import BESIDE, Case, beside_of
 from fastpin.model.doubts import warn_of
 from fastpin.model.options import OPTIONS
-from fastpin.model.points import EDGES
 from fastpin.report.states import (
     bush_line,
     cycle_lines,
-    hoop_line,
+    hoop_lines,
     note_lines,
     seat_lines,
     solver_line,
@@ -379,7 +378,7 @@ class RunReport:
             return [assess.fatigue.spectrum_line(one, over_yield(margins())) for one in damages]
 
         return {
-            "largest hoop stress": lambda: [hoop_line(problem, peaks, body) for body in EDGES],
+            "largest hoop stress": lambda: hoop_lines(problem, peaks),
             "bush": lambda: bush_line(problem, peaks).splitlines(),
             "seat": seat,
             "cycles": lambda: cycle_lines(problem, cycles, peaks),

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from fastpin.damage.counted import CountedMaterial
 from fastpin.damage.distance import checked_length, mean_depth, points_of_means
 from fastpin.damage.histories import Progress, different_states, history_blocks, with_residual
-from fastpin.damage.hot_spots import edge_angles
+from fastpin.damage.hot_spots import edge_points
 from fastpin.damage.reserve import Goal, StressReserve, stress_reserve
-from fastpin.damage.spectrum import SpectrumCount, SpectrumDamage, halves, spectrum_count
-from fastpin.errors import InputWarning
+from fastpin.damage.spectrum import FEW, SpectrumCount, SpectrumDamage, halves, spectrum_count
+from fastpin.errors import InputError, InputWarning
 from fastpin.model.assessment import FatigueAssessment, assessed_bodies, check_assessment
 from fastpin.model.checks import check_callable, instance
 from fastpin.model.doubts import warn_of
@@ -39,7 +41,9 @@ def assessed_fatigue(
     """Damage of the bodies over one pass of a spectrum: criterion by criterion, the largest damage first.
 
     A body without damage stands last. By a method of critical distances the entry of a body has the angles of the
-    assessment, or the hot spot of the edge alone. Without damage on the edge it is that of the edge.
+    assessment, or the hot spots of the hole's edge and of the further edges of a plate of any outline alone. Without
+    damage on the edges it is that of the edges. A further edge below which the distance leaves the plate is left out,
+    with a warning.
 
     Parameters
     ----------
@@ -87,11 +91,20 @@ def assessed_reserves(
     found = []
     for number, (criterion, body) in enumerate(jobs):
         told = tell(number)
-        reserve = stress_reserve(_edge_count(stops, how, criterion, body), goal, told)
-        if how.method != "edge" and (how.theta is not None or reserve.is_finite):
-            theta = np.array([reserve.theta]) if how.theta is None else how.theta
-            reserve = stress_reserve(_count_of_means(stops, how, criterion, body, theta), goal, told)
-        found.append(reserve)
+        if how.method == "edge":
+            found.append(stress_reserve(_edge_count(stops, how, criterion, body), goal, told))
+            continue
+        places = [] if how.theta is None else [(theta, 0.0) for theta in how.theta.tolist()]
+        if not places:  # those of the hole's edge and of the further edges
+            every = edge_points(different_states(stops, _is_straight(stops, how))[0], body, most=FEW)
+            assert every.depth is not None
+            parts = [part for part in (every.depth == 0.0, every.depth > 0.0) if part.any()]
+            apart = [Points.at_depth(every.depth[part], every.theta[part]) for part in parts]
+            reserves = [stress_reserve(_edge_count(stops, how, criterion, body, each), goal, told) for each in apart]
+            places = [(each.theta, each.depth) for each in reserves if each.is_finite]
+        found.append(
+            stress_reserve(_count_of_means(stops, how, criterion, body, places), goal, told) if places else reserves[0]
+        )
     return sorted(found, key=lambda one: (how.criteria.index(one.criterion), one.factor))
 
 
@@ -117,16 +130,18 @@ def _of_body(
     stops: Sequence[State], how: FatigueAssessment, criterion: str, body: Body, tell: Progress
 ) -> SpectrumDamage:
     """Return the damage of one body by one criterion."""
-    theta, share = how.theta, 1.0 if how.method == "edge" else 0.5
-
-    if how.method == "edge" or theta is None:
+    share = 1.0 if how.method == "edge" else 0.5
+    places = [] if how.theta is None else [(theta, 0.0) for theta in how.theta.tolist()]
+    if how.method == "edge" or not places:
         edge = _edge_count(stops, how, criterion, body).damage(*halves(lambda done, total: tell(share * done / total)))
         if how.straight is None and _is_straight(stops, how):
             _doubt_straight(stops, edge, how)
         if how.method == "edge" or math.isnan(edge.hot_spot.theta):
             return edge
-        theta = np.array([edge.hot_spot.theta])
-    count = _count_of_means(stops, how, criterion, body, theta)
+        for on_edge in (edge.depth == 0.0, edge.depth > 0.0):
+            spot = replace(edge, damage=np.where(on_edge, edge.damage, 0.0)).hot_spot
+            places += [] if math.isnan(spot.theta) else [(spot.theta, spot.depth)]
+    count = _count_of_means(stops, how, criterion, body, places)
     return count.damage(*halves(lambda done, total: tell(1.0 - share + share * done / total)))
 
 
@@ -136,7 +151,7 @@ def _doubt_straight(stops: Sequence[State], edge: SpectrumDamage, how: FatigueAs
         return
     wanted = {float(each[0]) for each in (edge.cycles.start, edge.cycles.stop, edge.cycles.largest)}
     few = list({load_point(state): state for state in stops if load_point(state) in wanted}.values())
-    points = Points.at_depth(0.0, edge_angles(few, 0))
+    points = edge_points(few, edge.body, most=0)  # type: ignore[arg-type]
     straight, refined = (
         _edge_count(few, how.changed(straight=each), edge.criterion, edge.body, points)  # type: ignore[arg-type]
         .damage(*halves(None))
@@ -164,28 +179,39 @@ def _edge_count(
 
 
 def _count_of_means(
-    stops: Sequence[State], how: FatigueAssessment, criterion: str, body: Body, theta: np.ndarray
+    stops: Sequence[State], how: FatigueAssessment, criterion: str, body: Body, places: Sequence[tuple[float, float]]
 ) -> SpectrumCount:
-    """Return the count of the means of the stresses at angles of the edge, by the theory of critical distances."""
+    """Return the count of the means of the stresses at places of the edges, by the theory of critical distances.
+
+    The `places` are angles, rad, and depths, m: 0 on the edge of the hole.
+    """
     problem, method, straight = stops[0].problem, how.method, _is_straight(stops, how)
-    residual = how.residual_stress
     length = checked_length(problem, method, body, how.length)
-    points, weights = points_of_means(problem, method, body, length, theta)  # type: ignore[arg-type]
+    means: list[tuple[Points, np.ndarray, Any]] = []
+    kept = []
+    for place, (theta, depth) in enumerate(places):
+        try:
+            some, weights = points_of_means(problem, method, body, length, np.array([theta]), depth)  # type: ignore[arg-type]
+        except InputError as error:
+            if depth == 0.0 or (place == len(places) - 1 and not means):
+                raise
+            warn_of([InputWarning(error.field, f"{error.reason}: this edge is left out")], 5)
+            continue
+        means.append((some, weights, how.residual_stress if depth == 0.0 else None))
+        kept.append((theta, depth or mean_depth(method, length)))
     counted = CountedMaterial.of(criterion, material_of(problem, body), None, owner_of(problem, body), how)
     different, order = different_states(stops, straight)
 
-    def means(progress: Progress) -> Iterator[tuple[slice, np.ndarray]]:
-        """Yield the mean stresses, angle by angle."""
-        assert points.depth is not None
-        for k in range(theta.size):
-            some = Points.at_depth(points.depth[k], points.theta[k])
+    def blocks(progress: Progress) -> Iterator[tuple[slice, np.ndarray]]:
+        """Yield the mean stresses, place by place."""
+        for k, (some, weights, residual) in enumerate(means):
             mean = np.zeros((len(different), 1, 4))
-            blocks = partial(history_blocks, different, some, body, straight)
-            for part, history in with_residual(blocks, problem, body, some, residual)(lambda part: None):
+            read = partial(history_blocks, different, some, body, straight)
+            for part, history in with_residual(read, problem, body, some, residual)(lambda part: None):
                 mean[:, 0] += np.einsum("tqc,q->tc", history, weights[part])
-            progress((k + 1) / theta.size)
+            progress((k + 1) / len(means))
             yield slice(k, k + 1), mean
 
-    depth = np.full(theta.shape, mean_depth(method, length))
+    theta, depth = np.array(kept).T
     parts = [(np.ones(theta.size, bool), counted)]
-    return SpectrumCount(criterion, body, theta, depth, different, order, parts, means)
+    return SpectrumCount(criterion, body, theta, depth, different, order, parts, blocks)

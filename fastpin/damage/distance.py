@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,7 +21,16 @@ from fastpin.errors import InputError
 from fastpin.model.assessment import checked_distance
 from fastpin.model.checks import choice, instance, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.points import Body, Points, is_beyond_bush, material_of, near_rim, owner_of
+from fastpin.model.points import (
+    Body,
+    Points,
+    edge_words,
+    further_parts,
+    is_beyond_bush,
+    material_of,
+    near_rim,
+    owner_of,
+)
 from fastpin.model.problem import Problem
 from fastpin.reading.stress import check_body
 from fastpin.states.choice import stops_of_one_problem
@@ -34,6 +43,9 @@ AREA_RADIUS = 0.5 * (4.0 * (2.0 * math.sqrt(2.0) + 1.0) / (3.0 * math.pi)) ** 2
 
 The mean of the largest principal stress over such a semicircle before a long crack at its threshold is ds_0.
 """
+
+STRAIGHT = 1e6
+"""Radius of the circle in place of a straight edge, in critical distances."""
 
 GAUSS = 32
 """Gauss points along the line, and in both directions of the area."""
@@ -84,14 +96,15 @@ def fatigue_at_distance(
         See :func:`fatigue`.
     method : {"point", "line", "area"}
     theta : array_like, optional
-        Angles on the edge, rad; the hot spot of the edge unless given.
+        Angles on the edge, rad. Unless given, the hot spot of all edges of the body.
     length : float, optional
         L, m; from ``threshold_range`` and ``limit_range`` of the constants unless given.
 
     Returns
     -------
     Fatigue
-        With the shape of `theta`, depth L/2 for the point method, and 0 for the others.
+        With the shape of `theta`, depth L/2 for the point method, and 0 for the others. On a further edge of a plate
+        the depth is that of the place on this edge.
 
     Raises
     ------
@@ -104,15 +117,16 @@ def fatigue_at_distance(
     check_body(problem, body)
     if constants is not None:
         instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
-    length = checked_length(problem, method, body, length, constants)
+    length, depth = checked_length(problem, method, body, length, constants), 0.0
     if theta is None:
-        theta = fatigue(stops, criterion, body, constants=constants).hot_spot.theta
+        spot = fatigue(stops, criterion, body, constants=constants).hot_spot
+        theta, depth = spot.theta, spot.depth
         if math.isnan(theta):
             raise InputError("theta", f"must be given: the edge has no hot spot, {NO_CRACK}")
     angles = numbers("theta", theta)
-    points, weights = points_of_means(problem, method, body, length, angles)
+    points, weights = points_of_means(problem, method, body, length, angles, depth)
     history = stress_history(stops, points, body).reshape(len(stops), *points.shape, 4)
-    place = angles, np.full(angles.shape, mean_depth(method, length))
+    place = angles, np.full(angles.shape, depth or mean_depth(method, length))
     return evaluated(np.einsum("tpqc,q->tpc", history, weights), stops[0], criterion, body, place, constants)
 
 
@@ -140,33 +154,58 @@ def mean_depth(method: str, length: float) -> float:
 
 
 def points_of_means(
-    problem: Problem, method: DistanceMethod, body: Body, length: float, angles: np.ndarray
+    problem: Problem, method: DistanceMethod, body: Body, length: float, angles: np.ndarray, depth: float = 0.0
 ) -> tuple[Points, np.ndarray]:
     """Return the points of the means at angles of the edge, shape (angles, q), and their weights, shape (q,).
+
+    With a `depth`, m, the place at one angle lies on a further edge of a plate of any outline.
 
     Raises
     ------
     InputError
         If the points lie outside the body, or beyond its bush.
     """
+    (part,) = further_parts(problem, body, angles.flat[0], depth) if depth else (None,)
+    if part is not None:
+        away = near_rim(problem, body) * problem.hole_radius + depth
+        return _below_further(problem, method, length, part, complex(away * np.exp(1j * angles.flat[0])))
     radius = problem.hole_radius
-    depth, turn, weights = _places(method, length / radius, near_rim(problem, body), body)
-    points = Points.at_depth(depth * radius, np.ravel(angles)[:, None] + turn)
+    below, turn, weights = _places(method, length / radius, near_rim(problem, body), -1.0 if body == "pin" else 1.0)
+    points = Points.at_depth(below * radius, np.ravel(angles)[:, None] + turn)
     if body == "plate" and is_beyond_bush(problem, points.depths(problem, body)).any():
         raise InputError("length", f"{length:g} reaches beyond the bush: a mean over two materials has no meaning")
     return points, weights
 
 
+def _below_further(
+    problem: Problem, method: DistanceMethod, length: float, part: Any, place: complex
+) -> tuple[Points, np.ndarray]:
+    """Points of the mean below a place x + iy, m, on a part of a further edge, shape (1, q), and weights (q,).
+
+    The part is a circle with the plate outside or inside; a straight one is a very large circle.
+    """
+    lug = problem.plate_body.lug.geometry
+    foot, along = (complex(each[0]) for each in part.nearest(np.array([place])))
+    centre, radius, _, sweep = part.circle or (foot - 1j * along * STRAIGHT * length, STRAIGHT * length, 0.0, -1.0)
+    sign = math.copysign(1.0, -sweep)
+    depth, turn, weights = _places(method, length / radius, 1.0, sign)
+    z = centre + (foot - centre) * (1.0 + sign * depth) * np.exp(1j * turn)
+    if not lug.contains(z).all():
+        words = f"{length:g} reaches out of the plate below a place {edge_words(problem, part.name, foot)}"
+        raise InputError("length", words)
+    return Points.at_xy(z.real[None], z.imag[None]), weights
+
+
 def _places(
-    method: DistanceMethod, length: float, edge: float, body: Body
+    method: DistanceMethod, length: float, edge: float, sign: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Depths and angles of the points of a mean, counted from a point on the edge, and their weights, each (q,).
 
-    Depths, `length` and the radius `edge` of the body's edge are in units of the hole's radius. The points crowd
-    towards the edge, where the stress has a root.
+    Depths, `length` and the radius `edge` of the edge are in units of one radius. The `sign` is 1 where the body lies
+    outside of its edge, and -1 where it lies inside. The points crowd towards the edge, where the stress has a root.
     """
     if edge != 1.0:
-        depth, turn, weights = _places(method, length / edge, 1.0, body)
+        depth, turn, weights = _places(method, length / edge, 1.0, sign)
         return edge * depth, turn, weights
     if method == "point":
         return np.array([0.5 * length]), np.zeros(1), np.ones(1)
@@ -175,7 +214,6 @@ def _places(
     if method == "line":
         return 2.0 * length * u**2, np.zeros(GAUSS), 2.0 * u * part
     away = AREA_RADIUS * length * u**2
-    sign = -1.0 if body == "pin" else 1.0
     widest = np.arccos(np.clip(-0.5 * sign * away, -1.0, 1.0))
     swing = np.outer(widest, 2.0 * u - 1.0)  # angles from the inward normal
     distance = np.broadcast_to(away[:, None], swing.shape)

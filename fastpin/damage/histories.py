@@ -14,7 +14,7 @@ import numpy as np
 from fastpin.elasticity.tractions import Tractions
 from fastpin.model import checks, loads
 from fastpin.model.crack import residual_at
-from fastpin.model.points import Body, Points, owner_of
+from fastpin.model.points import Body, Points, further_parts, owner_of
 from fastpin.model.problem import Problem
 from fastpin.reading.stress import Stress, stress_at
 from fastpin.runtime.threads import in_threads
@@ -166,12 +166,14 @@ Blocks = Callable[[Progress], Iterator[tuple[slice, np.ndarray]]]
 def with_residual(blocks: Blocks, problem: Problem, body: Body, points: Points, residual: Any) -> Blocks:
     """Return the blocks of points of a body with a residual stress of the plate, a number or pairs, added.
 
-    It acts in the plate alone: pins and bushes keep their stresses.
+    It acts in the plate round the hole alone: pins, bushes and further edges of the plate keep their stresses.
     """
     if residual is None or owner_of(problem, body) != "plate":
         return blocks
     depth = np.broadcast_to(points.depths(problem, body), points.shape).ravel()
-    hoop, theta = residual_at(residual, depth * problem.hole_radius), points.theta.ravel()
+    depth, theta = depth * problem.hole_radius, points.theta.ravel()
+    is_round_hole = [part is None for part in further_parts(problem, body, theta, depth)]
+    hoop = np.where(is_round_hole, residual_at(residual, depth), 0.0)
     cos, sin = np.cos(theta), np.sin(theta)
     added = hoop[:, None] * np.stack([sin * sin, cos * cos, np.zeros(theta.size), -sin * cos], axis=-1)
 

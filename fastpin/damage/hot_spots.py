@@ -17,7 +17,7 @@ from fastpin.errors import InputError
 from fastpin.model import angles, checks, ties
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
-from fastpin.model.points import CRITERION, Body, Points, is_beyond_bush, isotropic_material, owner_of
+from fastpin.model.points import CRITERION, Body, Points, has_outline, is_beyond_bush, isotropic_material, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
@@ -25,6 +25,7 @@ from fastpin.reading.stress import check_body
 from fastpin.states.choice import loaded_span_of, missing_corners, states_between, stops_of_one_problem
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
+from fastpin.states.yielding import further_points
 
 CRITERIA = tuple(FATIGUE_CRITERIA)
 """The criteria; :mod:`fastpin.damage.criteria` has their formulas and sources."""
@@ -68,7 +69,7 @@ class Fatigue(ReadOnly):
     body : str
         "plate", "pin" or "seat".
     theta, depth : ndarray
-        Angles of the points, rad, and distances from the edge, m.
+        Angles of the points, rad, and distances from the edge of the hole or pin, m.
     parameter : ndarray
         Pa; rad for "fatemi-socie".
     plane : ndarray or None
@@ -153,9 +154,10 @@ def fatigue(
         constants of the plate. "seat" is the plate round the bush: its edge is the seat of the bush.
     points : Points, optional
         Unless given, the points lie all round the edge: at the nodes, at the ends of all contact and stick zones, and
-        at each degree.
+        at each degree. A plate of any outline also has points on its other edges, apart from sharp corners.
     depth : array_like, optional
-        Distance of these points from the edge, m; 0 unless given. A column of depths gives a grid.
+        Distance of these points from the edge, m; 0 unless given. A column of depths gives a grid. Other edges then
+        have no points.
     constants : FatigueConstants, optional
         In place of the constants of the body's material. In a dimensionless problem they count in its units.
 
@@ -167,7 +169,7 @@ def fatigue(
     """
     stops = stops_of_one_problem(states)
     if points is None:
-        points = Points.at_depth(0.0 if depth is None else depth, edge_angles(stops))
+        points = edge_points(stops, body, depth)
     elif depth is not None:
         raise InputError("depth", "can't be given together with points")
     check_body(stops[0].problem, body)
@@ -175,6 +177,18 @@ def fatigue(
     place = points.theta, points.depths(stops[0].problem, body) * stops[0].problem.hole_radius
     history = stress_history(stops, points, body)
     return evaluated(history, stops[0], criterion, body, place, constants)
+
+
+def edge_points(states: Sequence[State], body: Body, depth: ArrayLike | None = None, most: float = math.inf) -> Points:
+    """Points all round the edge of a body at some depth, m; without it on all edges of the body.
+
+    The angles are those of :func:`edge_angles`. Points on further edges of a plate of any outline come last.
+    """
+    angles, problem = edge_angles(states, most), states[0].problem
+    if depth is not None or owner_of(problem, body) != "plate" or not has_outline(problem):
+        return Points.at_depth(0.0 if depth is None else depth, angles)
+    theta, below, _ = further_points(problem)
+    return Points.at_depth(np.r_[np.zeros(angles.size), problem.hole_radius * below], np.r_[angles, theta])
 
 
 def edge_angles(states: Sequence[State], most: float = math.inf) -> np.ndarray:

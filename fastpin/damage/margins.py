@@ -14,10 +14,9 @@ from fastpin.damage.reserve import Goal, StressReserve
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import FatigueAssessment
-from fastpin.model.points import edge_body, isotropic_bodies, owner_of
+from fastpin.model.points import edge_body, isotropic_bodies, owner_of, point_words
 from fastpin.model.problem import Problem
 from fastpin.model.strength import StrengthAssessment
-from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
 from fastpin.states.margins import Margin, part_of, walk_margins
 from fastpin.states.quantities import load_point, point_name
@@ -48,7 +47,7 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
         one = next((one for one in known if not isinstance(one, str) and one.body == body), None)
         if limited is not None:
             spot, owner = limited.hot_spot, owner_of(problem, body)
-            place = "" if math.isnan(spot.theta) else f"at {from_bottom(spot.theta):z.1f} deg"
+            place = "" if math.isnan(spot.theta) else point_words(problem, body, spot.theta, spot.depth)
             limit = math.nan if limited.limit is None else float(limited.limit)
             row = Margin(f"{subject}, Findley", "traction", spot.parameter, limit, remark=place, name="findley")
             rows.append(row._replace(owner=owner, part=part_of(problem, owner)))
@@ -106,9 +105,8 @@ def _remark(one: StressReserve, how: FatigueAssessment) -> str:
     words = f"{goal_words(one.goal, how)}{how.reliability_words}"
     if not one.is_finite:
         return f"{words}: no stress is too large"
-    depth = "" if one.depth == 0.0 else f", {units(one.problem)['length'].text(one.depth, 3)} below the edge"
     ends = f"by load points {point_name(one.start)} and {point_name(one.stop)}"
-    return f"{words}; at {from_bottom(one.theta):z.1f} deg{depth}, {ends}"
+    return f"{words}; {point_words(one.problem, one.body, one.theta, one.depth)}, {ends}"
 
 
 def strength_margins(how: StrengthAssessment, state: State, strength: JointStrength) -> list[Margin]:

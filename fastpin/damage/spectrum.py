@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from fastpin.damage.counted import SPECTRUM_CRITERIA, CountedMaterial, Spectrum
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, Criterion
 from fastpin.damage.histories import different_states, history_blocks, with_residual
-from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_angles
+from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_points
 from fastpin.damage.lives import failure_probability
 from fastpin.errors import InputError
 from fastpin.model import checks, ties
@@ -176,7 +176,7 @@ def spectrum_damage(
         See :func:`fatigue`.
     points : Points, optional
         Unless given, the points lie all round the edge: at the nodes and at each degree. Of up to 100 different states
-        the ends of all zones are added.
+        the ends of all zones are added. A plate of any outline also has points on its other edges.
     straight : bool
         Whether the tractions are straight lines between the nodes everywhere, see :meth:`fastpin.State.stress`. The
         stresses are then one product with a matrix, which takes a small part of the time.
@@ -270,7 +270,7 @@ def spectrum_count(
     check_body(problem, body)
     different, order = different_states(stops, checks.true_or_false("straight", straight))
     if points is None:
-        points = Points.at_depth(0.0 if depth is None else depth, edge_angles(different, FEW))
+        points = edge_points(different, body, depth, FEW)
     elif depth is not None:
         raise InputError("depth", "can't be given together with points")
     checks.instance("points", points, Points, "fastpin.Points")

@@ -1,4 +1,5 @@
 from . import load_cycle as load_cycle
+from . import outline as outline
 from . import plotting as plotting
 from . import sheet as sheet
 from . import sketch as sketch
@@ -22,6 +23,7 @@ from .laminates import plot_stiffness as plot_stiffness
 from .laminates import plot_strength as plot_strength
 from .load_cycle import plot_loops as plot_loops
 from .load_cycle import plot_slip as plot_slip
+from .outline import plot_outline as plot_outline
 from .plotting import result_html as result_html
 from .plotting import state_html as state_html
 from .sketch import plot_lug as plot_lug

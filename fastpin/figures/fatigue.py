@@ -27,7 +27,7 @@ from fastpin.figures.style import COLOURS, MAX_NAMED, caption, draw_grid, line, 
 from fastpin.model import angles, checks
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.crack import mouth_words
-from fastpin.model.points import EDGES, Body, edge_body
+from fastpin.model.points import EDGES, Body, edge_body, further_parts, point_words
 from fastpin.model.units import units
 from fastpin.states.choice import span_of
 
@@ -117,12 +117,14 @@ def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
         angle, order = _by_angle(one)
         damage, colour = one.damage.ravel()[order], COLOURS[2 * place + 1]
         axes[0, 0].plot(angle, damage, **line(2 * place))
+        handles += _draw_further(axes[0, 0], one, one.damage.ravel(), COLOURS[2 * place])
         if math.isnan(spot.theta):
             handles.append(Line2D([], [], linestyle="none", label=f"{before}no damage"))
             continue
         axes[0, 0].plot(angles.from_bottom(spot.theta), spot.damage, "o", markersize=4.5, color=colour)
         median = f", median life {spot.life * 10.0**one.shift:.3g}" if one.shift else ""
-        where = f"{before}{spot.life:.3g} spectra at {angles.from_bottom(spot.theta):.1f} deg{median}".replace("-", "−")
+        words = point_words(one.problem, one.body, spot.theta, spot.depth)
+        where = f"{before}{spot.life:.3g} spectra {words}{median}".replace("-", "−")
         handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
         _draw_planes(axes[0, 0], angle, damage, (one.plane.ravel() - one.theta.ravel())[order])
         axes[1, 0].semilogy(angle, np.where(damage > 0.0, one.life.ravel()[order], np.nan), **line(2 * place))
@@ -171,7 +173,7 @@ def _check_alike(found: Sequence[Fatigue] | Sequence[SpectrumDamage]) -> None:
     """Refuse unlike problems, criteria or depths."""
     if any(one.criterion != found[0].criterion or one.problem != found[0].problem for one in found):
         raise InputError("found", "must be of one problem and one criterion")
-    if any(np.ptp(one.depth) > 0.0 for one in found):
+    if any(np.ptp(one.depth.ravel()[_on_hole(one)]) > 0.0 for one in found):
         raise InputError("found", "must be of points at one depth")
 
 
@@ -219,10 +221,28 @@ def _finish(
 
 
 def _by_angle(found: Fatigue | SpectrumDamage) -> tuple[np.ndarray, np.ndarray]:
-    """The angles from the bottom, deg, in increasing order, and the order of the points."""
-    angle = np.array([angles.from_bottom(place) for place in found.theta.ravel().tolist()])
+    """The angles from the bottom of the points of the hole, deg, in increasing order, and the order of these points."""
+    own = np.flatnonzero(_on_hole(found))
+    angle = np.array([angles.from_bottom(place) for place in found.theta.ravel()[own].tolist()])
     order = np.argsort(angle)
-    return angle[order], order
+    return angle[order], own[order]
+
+
+def _on_hole(found: Fatigue | SpectrumDamage) -> np.ndarray:
+    """Which points do not lie on a further edge of a plate of any outline."""
+    parts = further_parts(found.problem, found.body, found.theta, found.depth)
+    return np.array([part is None for part in parts])
+
+
+def _draw_further(panel: Axes, found: Fatigue | SpectrumDamage, values: np.ndarray, colour: str) -> list[Line2D]:
+    """Draw the points on further edges over their angle from the hole's centre, and return the entry of the legend."""
+    beyond = ~_on_hole(found)
+    if not beyond.any():
+        return []
+    angle = [angles.from_bottom(place) for place in found.theta.ravel()[beyond].tolist()]
+    style: Any = {"linestyle": "none", "marker": ".", "markersize": 2.0, "color": colour}
+    panel.plot(angle, values[beyond], **style)
+    return [Line2D([], [], label="other edges, by angle", **style)]
 
 
 def _draw_parameter(panel: Axes, found: Fatigue, factor: float, place: int, name: str) -> list[Line2D]:
@@ -232,10 +252,12 @@ def _draw_parameter(panel: Axes, found: Fatigue, factor: float, place: int, name
     panel.plot(angle, parameter, **line(2 * place))
     before = f"{name}: " if name else ""
     handles = [Line2D([], [], label=name, **line(2 * place))] if name else []
+    handles += _draw_further(panel, found, factor * found.parameter.ravel(), COLOURS[2 * place])
     if math.isnan(spot.theta):
         return [*handles, Line2D([], [], linestyle="none", label=f"{before}{NO_CRACK}")]
     panel.plot(angles.from_bottom(spot.theta), factor * spot.parameter, "o", markersize=4.5, color=colour)
-    where = f"{before}hot spot at {angles.from_bottom(spot.theta):.1f} deg".replace("-", "−")
+    words = point_words(found.problem, found.body, spot.theta, spot.depth)
+    where = f"{before}hot spot {words}".replace("-", "−")
     handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
     if found.plane is not None:
         _draw_planes(panel, angle, parameter, (found.plane.ravel() - found.theta.ravel())[order])

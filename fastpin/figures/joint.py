@@ -110,7 +110,7 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
     sheet.figure.colorbar(mappable, ax=panels, label=label, shrink=0.8, pad=0.02)
     looks = {"sticks": "black", "slips": COLOURS[1]}
     entries = [Line2D([], [], color=colour, label=label, linewidth=3.0) for label, colour in looks.items()]
-    words = f"largest force {of_joint['force'].text(longest, 3)}"
+    words = f"largest force at this load point: {of_joint['force'].text(longest, 3)}"
     sheet.legend([*entries, Line2D([], [], color="black", marker=">", label=words)], 3)
     sheet.head(look.title)
     return sheet

@@ -1,3 +1,4 @@
+from .fields import EdgeHoop as EdgeHoop
 from .fields import PlateField as PlateField
 from .fields import lug_of as lug_of
 from .fields import plate_field as plate_field

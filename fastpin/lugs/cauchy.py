@@ -14,11 +14,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from fastpin.lugs.outline import Hole
 from fastpin.lugs.panels import Edges, near_integrals
-
-HOLE = len(Hole("", 0j, 1.0).parts)
-"""Parts of the edge of the pin's hole, the first ones."""
 
 BLOCK = 50
 """Points whose integrals are taken at once."""
@@ -58,7 +54,8 @@ class EdgeField(NamedTuple):
         by_panel = moved.reshape(edges.part.size, edges.points, -1)
         slope = (edges.derivative @ by_panel / edges.half[:, None, None]).reshape(moved.shape)
         potential = (slope + 1j * pulled) / ((kolosov + 1.0) * (1j * edges.normals[:, None]))
-        joints = edges.ends[0][edges.part >= HOLE] if far else np.array([part.start for part in edges.parts[HOLE:]])
+        starts = [part.start for part in edges.parts[edges.of_hole :]]
+        joints = edges.ends[0][edges.part >= edges.of_hole] if far else np.array(starts)
         before, after = (np.abs(joints[:, None] - ends).argmin(axis=1) for ends in edges.ends[::-1])
         ends = edges.lagrange(np.array([-1.0, 1.0])) @ by_panel
         jumps = (ends[after, 0] - ends[before, 1]) / (kolosov + 1.0)

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import json
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from fastpin.bodies.compliance import Compliance, complex_coefficients
 from fastpin.errors import InputError
 from fastpin.lugs.cauchy import EdgeField, traction_on
-from fastpin.lugs.outline import Lug, distances
+from fastpin.lugs.outline import CLOSEST, Lug, distances
 from fastpin.lugs.panels import Fineness
 from fastpin.lugs.plates import boundaries, hole_compliance, respond
 
@@ -29,14 +30,38 @@ FINENESS = Fineness(12, 16)
 MOST_HARMONICS = 60
 """Most harmonics to which those of a file are doubled."""
 
-CLOSEST = 1e-8
-"""Distance from an edge below which a point is taken to be so far inside, hole radii. Nothing is lost there."""
-
 LEAST_PANEL = 0.004
 """Half length of the panels on which a largest stress is looked for, hole radii; shorter ones crowd at corners."""
 
+AROUND = 33
+"""Points of a panel at which its hoop stress is known: a largest one between them is 3e-4 larger at most."""
+
 MOST_POINTS = 5_000
 """Points whose stresses are kept for other states, at most."""
+
+
+class EdgeHoop(NamedTuple):
+    """The hoop stress along the edges beyond the hole: first the outline counter-clockwise, then further holes.
+
+    Attributes
+    ----------
+    order : int
+        Highest harmonic K of the tractions on the hole.
+    z : ndarray of complex, shape (m,)
+        Points, apart from singular places, hole radii.
+    along : ndarray, shape (m,)
+        Their places along the edges, from the beginning of the outline, hole radii.
+    names : list of str
+        Their edges.
+    columns : ndarray, shape (m, 2 + 4 K + 4)
+        The stress for unit coefficients, as those of :meth:`fastpin.bodies.Compliance.coefficients`.
+    """
+
+    order: int
+    z: np.ndarray
+    along: np.ndarray
+    names: list[str]
+    columns: np.ndarray
 
 
 class PlateField:
@@ -62,12 +87,13 @@ class PlateField:
         Distance from them within which no largest stress is looked for.
     matrix : ndarray, shape (2 + 4 K, 2 + 4 K)
         Coefficients G v/R on the hole's edge.
+    along_edges : EdgeHoop
     """
 
     apart = 0.25  # hole radii
 
     def __init__(self, lug: Lug, order: int) -> None:
-        self.order, self._lug = order, lug
+        self.order = order
         self.kolosov, response = lug.kolosov, respond(lug, order, FINENESS, lambda done: None)
         self.edges = edges = response.edges
         size, (moved, pulled) = 2 + 4 * order, response.whole()
@@ -76,26 +102,40 @@ class PlateField:
         singular = [loop.parts[k].start for loop in loops for k in range(len(loop.parts)) if loop.is_singular(k)]
         self.singular = np.array(singular, dtype=complex)
         self._edges = [part.scaled(1.0 / lug.hole_radius) for part in lug.edges]
-        self._outer = edges.part_of_node >= len(lug.contact_edge)
-        field = EdgeField.of(edges, self.kolosov, moved, pulled).on(edges.part >= len(lug.contact_edge))
-        potential, spread = _beside_hole(order, self.kolosov, edges.z[self._outer])
+        field = EdgeField.of(edges, self.kolosov, moved, pulled).on(edges.part >= edges.of_hole)
+        self.along_edges = self._hoop(field)
+        potential, spread = _beside_hole(order, self.kolosov, edges.z[edges.is_further])
         field.potential[:, :size] -= potential
         field.traction[:, :size] -= traction_on(potential, spread, field.along[:, None])
         self._field = field
 
-    def contains(self, z: np.ndarray) -> np.ndarray:
-        """Whether points (m,) lie within the outline, but in no further hole; edges belong to the plate."""
-        away = np.array([distances(part, z) for part in self._edges]).min(axis=0)
-        return np.asarray((away <= CLOSEST) | self._lug.surrounds(z * self._lug.hole_radius))
-
     @cached_property
     def rims(self) -> tuple[np.ndarray, list[str]]:
-        """Points on the other edges, apart from singular places, and the names of their edges."""
+        """Nodes on the other edges, apart from singular places, and the names of their edges."""
+        return self._places(self.edges.rule[0])[1:]
+
+    def _places(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
+        """Points at s from -1 to 1 of the other edges' panels: which are kept (panels, s), the kept ones, and names."""
         edges = self.edges
-        kept = self._outer & (edges.half[edges.panel] > LEAST_PANEL)
-        kept &= (np.abs(edges.z[:, None] - self.singular) > self.apart).all(axis=1)
-        names = [edges.parts[part].name for part in edges.part_of_node[kept]]
-        return edges.z[kept], names
+        panels = np.flatnonzero(edges.part >= edges.of_hole)
+        z = edges.at(panels[:, None], s)[0]
+        kept = (np.abs(z[..., None] - self.singular) > self.apart).all(axis=-1)
+        kept &= edges.half[panels, None] > LEAST_PANEL
+        return kept, z[kept], [edges.parts[part].name for part in edges.part[panels[np.nonzero(kept)[0]]]]
+
+    def _hoop(self, field: EdgeField) -> EdgeHoop:
+        """The hoop stress along the other edges of a whole field there: 4 Re Phi is the sum of the normal stresses."""
+        s, edges = np.linspace(-1.0, 1.0, AROUND), self.edges
+        at_nodes = (4.0 * field.potential - field.traction / (-1j * field.along[:, None])).real
+        kept, z, names = self._places(s)
+        values = edges.lagrange(s) @ at_nodes.reshape(len(kept), edges.points, -1)
+        length = np.array([part.length for part in edges.parts])
+        starts, panels = np.cumsum(length) - length, edges.part >= edges.of_hole
+        share = edges.share[panels, None] + 0.5 * edges.width[panels, None] * s
+        part = edges.part[panels, None]
+        along = (starts[part] + share * length[part])[kept] - starts[edges.of_hole]
+        order = np.argsort(along, kind="stable")
+        return EdgeHoop(self.order, z[order], along[order], [names[k] for k in order], values[kept][order])
 
     def smooth(self, column: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The part of the smooth field that the integrals give: s_rr + s_tt and s_rr - i s_rt at points z (m,)."""
@@ -115,7 +155,7 @@ class PlateField:
         return 4.0 * potential.real, 2.0 * potential.real - (z / np.conj(z))[:, None] * spread
 
     def _moved(self, z: np.ndarray) -> np.ndarray:
-        """The points, those on an edge a little inside: the integrals jump there."""
+        """The points, those on an edge a little inside: the integrals jump there, and nothing is lost."""
         found = z.copy()
         for part in self._edges:
             near = np.flatnonzero(distances(part, z) < CLOSEST)

@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fastpin.lugs.outline import Part
+from fastpin.lugs.outline import MOST_TURN, Part, turn_between
 
 LEAST_OF_LINE, LEAST_OF_ARC = 2, 4
 """Fewest sides of a polyline that become one line or one arc. Four points of a symmetric polygon lie on a circle."""
 
-MOST_TURN, MOST_SWEEP = 0.4, 5.2
-"""Largest turn from side to side of an arc, and of the whole arc, rad. 15 equal sides stay sides, 16 are arcs."""
+MOST_SWEEP = 5.2
+"""Largest turn of a whole arc, rad."""
 
 
 class FittedArc(NamedTuple):
@@ -63,19 +63,6 @@ def fitted(outline: Sequence[Part], tolerance: float) -> tuple[tuple[Part, ...],
             if through is not None:
                 arcs.append(FittedArc(part, high - low + 1, _off_arc(points[low : high + 1])[0]))
     return tuple(found), arcs
-
-
-def kinks(outline: Sequence[Part]) -> list[float]:
-    """Turns, rad, from one straight part of an outline to the next one that are small, as those of polylines are."""
-    pairs = [(outline[k - 1], part) for k, part in enumerate(outline)]
-    turns = [abs(turn_between(*pair)) for pair in pairs if pair[0].through is None and pair[1].through is None]
-    return [turn for turn in turns if 1e-6 < turn <= MOST_TURN]
-
-
-def turn_between(before: Part, after: Part) -> float:
-    """Angle by which an outline turns from one part to the next one, rad."""
-    step = after.direction(np.zeros(1))[0] * np.conj(before.direction(np.ones(1))[0])
-    return math.atan2(step.imag, step.real)
 
 
 def is_corner(before: Part, after: Part) -> bool:

@@ -21,7 +21,7 @@ from typing import ClassVar
 import numpy as np
 
 from fastpin.bodies.compliance import Compliance
-from fastpin.lugs.cauchy import HOLE, EdgeField, traction_on
+from fastpin.lugs.cauchy import EdgeField, traction_on
 from fastpin.lugs.fields import lug_of
 from fastpin.lugs.mouths import Mouth
 from fastpin.lugs.outline import Part, distances
@@ -197,7 +197,7 @@ def _equations(body: Compliance, beside: Sequence[tuple[Part, float]], to_hole: 
 
 def is_fine(edges: Edges, lines: Sequence[Part]) -> bool:
     """Whether no panel is too long for its distance from the lines of cracks."""
-    panels = np.flatnonzero(edges.part >= HOLE)
+    panels = np.flatnonzero(edges.part >= edges.of_hole)
     points, _ = edges.at(panels[:, None], np.linspace(-1.0, 1.0, 7))
     away = np.array([distances(line, points.ravel()).reshape(points.shape).min(axis=1) for line in lines])
     return bool(np.all(2.0 * edges.half[panels] <= 1.25 * APART * away))
@@ -210,7 +210,7 @@ def _kept(other: OtherEdges, rays: tuple[Ray, ...], part: float) -> tuple[np.nda
     starts, along = (np.array(each) for each in zip(*(other.start(*ray) for ray in rays), strict=True))
     ends = [Part("", *pair) for pair in zip(starts.tolist(), (starts + longest * along).tolist(), strict=True)]
     equations = _equations_beside(other, ends)
-    nodes = equations.edges.z[equations.edges.part_of_node >= HOLE]
+    nodes = equations.edges.z[equations.edges.is_further]
     if other.mouth is not None:
         nodes = equations.edges.z[~other.mouth.follows(equations.edges.z, equations.edges.extent)]
     count = _count(nodes, ends)
@@ -245,7 +245,7 @@ def image(
     """
     edges = equations.edges
     if mouth is None:
-        others, normal, radius, is_inside = edges.part_of_node >= HOLE, place, 1.0, False
+        others, normal, radius, is_inside = edges.is_further, place, 1.0, False
     else:
         others = ~mouth.follows(edges.z, edges.extent)
         normal, radius, is_inside = np.full(z.size, mouth.normal), mouth.radius, mouth.is_inside

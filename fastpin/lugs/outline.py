@@ -44,6 +44,15 @@ MOST_PARTS = 300
 """Most parts of the outline and most further holes."""
 
 
+CLOSEST = 1e-8
+"""Distance from an edge below which a point is taken to lie on it, hole radii."""
+
+ON_EDGE = 1e-7
+"""Distance from an edge below which a point that was read from it is named by it, hole radii: more is no rounding."""
+
+MOST_TURN = 0.4
+"""Largest turn from side to side of a polyline, rad: 15 equal sides are a polygon, 16 stand for a circle."""
+
 SAME_PLACE = 1e-9
 """Part of its length by which a part is longer for a ray, so that none passes between two parts."""
 
@@ -321,7 +330,7 @@ class Lug:
 
     def surrounds(self, z: np.ndarray) -> np.ndarray:
         """Whether points (m,), m, lie within the outline, but in no further hole."""
-        return np.asarray(np.array([part.turn_round(z) for part in self.edges]).sum(axis=0) > math.pi)
+        return encloses(self.edges, z)
 
     @property
     def extent(self) -> float:
@@ -332,6 +341,27 @@ class Lug:
     def nearest(self) -> float:
         """Distance of the nearest other edge from the hole's centre, in hole radii."""
         return min(float(distances(part, np.zeros(1))[0]) for part in self.edges) / self.hole_radius
+
+    @property
+    def edge_lines(self) -> list[np.ndarray]:
+        """Points along each of :attr:`edges`, complex, in hole radii."""
+        return [part.at(np.linspace(0.0, 1.0, 41)) / self.hole_radius for part in self.edges]
+
+    @cached_property
+    def polylines(self) -> set[str]:
+        """Names of polylines: the stress along such a side is not that along a smooth edge."""
+        return {after for _, before, after in kinks(self.outline) if before == after}
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Whether points (m,), m, lie within the outline, but in no further hole; edges belong to the plate."""
+        away = np.array([distances(part, points) for part in self.edges]).min(axis=0)
+        return np.asarray((away <= CLOSEST * self.hole_radius) | self.surrounds(points))
+
+    def edges_at(self, points: np.ndarray) -> list[Part | None]:
+        """The part on which each of some points lies, complex, m; None elsewhere."""
+        away = np.array([distances(part, points) for part in self.edges])
+        is_there = away.min(axis=0) <= ON_EDGE * self.hole_radius
+        return [self.edges[k] if there else None for k, there in zip(away.argmin(axis=0), is_there, strict=True)]
 
     def document(self) -> dict[str, Any]:
         """Return the outline, holes, supports and loads, JSON-ready. Without plane, Poisson's ratio and hole radius."""
@@ -445,6 +475,26 @@ def _check_outline(outline: Sequence[Part], radius: float) -> None:
         raise InputError("outline", f"crosses itself near {point_text(place)}")
 
 
+def turn_between(before: Part, after: Part) -> float:
+    """Angle by which an outline turns from one part to the next one, rad."""
+    step = after.direction(np.zeros(1))[0] * np.conj(before.direction(np.ones(1))[0])
+    return _angle(complex(step))
+
+
+def kinks(outline: Sequence[Part]) -> list[tuple[float, str, str]]:
+    """Turns, rad, from one straight part to the next one that are small, as those of polylines are, and both names."""
+    pairs = [(outline[k - 1], part) for k, part in enumerate(outline)]
+    straight = [pair for pair in pairs if pair[0].through is None and pair[1].through is None]
+    turns = [(abs(turn_between(*pair)), pair[0].name, pair[1].name) for pair in straight]
+    return [turn for turn in turns if 1e-6 < turn[0] <= MOST_TURN]
+
+
+def encloses(loop: Sequence[Part], points: np.ndarray) -> np.ndarray:
+    """Whether a closed curve in either direction goes round points (m,)."""
+    turns = np.array([part.turn_round(points) for part in loop]).sum(axis=0)
+    return np.asarray(np.abs(turns) > math.pi)
+
+
 def distances(part: Part, points: np.ndarray) -> np.ndarray:
     """Distances of points from a part, m."""
     ends = np.minimum(np.abs(points - part.start), np.abs(points - part.end))
@@ -520,8 +570,7 @@ def _check_holes(lug: Lug) -> None:
         circles.append(("holes", words, hole.centre, hole.radius))
     for place, (at_fault, words, centre, radius) in enumerate(circles):
         is_far = not max(abs(centre.real), abs(centre.imag)) <= MOST_EXTENT * lug.hole_radius
-        turns = sum(float(part.turn_round(np.array([centre]))[0]) for part in lug.outline)
-        if is_far or turns <= math.pi:  # round a point inside the outline turns once
+        if is_far or not encloses(lug.outline, np.array([centre]))[0]:
             raise InputError(at_fault, f"{words} does not lie inside the outline")
         for part in lug.outline:
             if float(distances(part, np.array([centre]))[0]) < radius + least:

@@ -12,7 +12,6 @@ displacements u stand for 2G u.
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -24,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.lugs.outline import Part, distances
+from fastpin.lugs.outline import Part, distances, turn_between
 from fastpin.model.checks import as_toml
 
 MOST_NODES = 4000
@@ -114,8 +113,7 @@ class Boundary:
 
     def _turn(self, place: int) -> float:
         """Angle by which the edge turns at the start of the part, rad; negative at re-entrant corners."""
-        before, after = self.parts[place - 1], self.parts[place]
-        return cmath.phase(complex(after.direction(np.zeros(1))[0] / before.direction(np.ones(1))[0]))
+        return turn_between(self.parts[place - 1], self.parts[place])
 
 
 class Edges:
@@ -125,8 +123,12 @@ class Edges:
     ----------
     parts : list of Part
         All parts, in the order of the loops.
+    of_hole : int
+        Number of the parts of the first loop, the edge of the pin's hole.
     part : ndarray of int, shape (panels,)
         The part of each panel.
+    share, width : ndarray, shape (panels,)
+        Middle and length of each panel, in parts of the length of its part.
     z, normals : ndarray of complex, shape (nodes,)
         Nodes, and outward unit normals.
     weights : ndarray, shape (nodes,)
@@ -139,10 +141,11 @@ class Edges:
     """
 
     def __init__(self, loops: Sequence[Boundary], fineness: Fineness) -> None:
-        self.parts = [part for loop in loops for part in loop.parts]
+        self.parts, self.of_hole = [part for loop in loops for part in loop.parts], len(loops[0].parts)
         self.points = fineness.points
         panels = _panels(loops, self.parts, fineness)
-        part, share, width = np.array(panels).T
+        part, self.share, self.width = np.array(panels).T
+        share, width = self.share, self.width
         self.part = part.astype(int)
         circles = [each.circle or (0j, 0.0, 0.0, 0.0) for each in self.parts]
         centre, radius, first, sweep = (np.array(values)[self.part] for values in zip(*circles, strict=True))
@@ -168,6 +171,11 @@ class Edges:
     def part_of_node(self) -> np.ndarray:
         """The part of each node."""
         return self.part[self.panel]
+
+    @property
+    def is_further(self) -> np.ndarray:
+        """Whether each node lies beyond the edge of the pin's hole."""
+        return self.part_of_node >= self.of_hole
 
     @property
     def extent(self) -> float:

@@ -21,7 +21,7 @@ from threadpoolctl import threadpool_limits
 
 from fastpin.bodies.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER, WARM, Compliance
 from fastpin.errors import InputError
-from fastpin.lugs.outline import Hole, Lug, Part
+from fastpin.lugs.outline import Lug, Part
 from fastpin.lugs.panels import Boundary, Edges, Fineness, matrices
 from fastpin.model.checks import check_callable, instance, string, whole_number
 from fastpin.version import __version__
@@ -336,10 +336,10 @@ class RigidModes(NamedTuple):
 
 
 def _rigid_modes(lug: Lug, edges: Edges) -> RigidModes:
-    z, first = edges.z, len(lug.contact_edge)
+    z, last = edges.z, edges.of_hole + len(lug.outline)
     modes = np.stack([np.ones_like(z), np.full_like(z, 1j), 1j * z], axis=1)
     both = np.concatenate([modes.real, modes.imag])
-    outer = (edges.part_of_node >= first) & (edges.part_of_node < first + len(lug.outline))
+    outer = edges.is_further & (edges.part_of_node < last)
     weights = np.tile(edges.weights, 2)[:, None]
     on_outline = both * weights * np.tile(outer, 2)[:, None]
     return RigidModes(both, on_outline, both * weights, on_outline.T @ both)
@@ -386,8 +386,7 @@ def boundaries(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Bound
 
 def _on_parts(lug: Lug, edges: Edges, name: str) -> np.ndarray:
     """Whether each node lies on a part or hole of this name."""
-    first = len(Hole("", 0j, 1.0).parts)
-    named = [place for place, part in enumerate(edges.parts) if place >= first and part.name == name]
+    named = [place for place, part in enumerate(edges.parts) if place >= edges.of_hole and part.name == name]
     return np.isin(edges.part_of_node, named)
 
 
@@ -409,7 +408,7 @@ def _tractions(lug: Lug, edges: Edges, order: int, pinned: Collection[str]) -> t
     The tractions are complex, shape (nodes, edges with a pin x (2 + 4 K) + loads).
     """
     loads = tuple(sorted({load.name for load in lug.loads}))
-    contacts = [(edges.part_of_node < len(lug.contact_edge), 0j)]
+    contacts = [(~edges.is_further, 0j)]
     contacts += [
         (_on_parts(lug, edges, hole.name), hole.centre / lug.hole_radius) for hole in lug.holes if hole.name in pinned
     ]

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from fastpin.errors import InputError, InputWarning
-from fastpin.model.checks import choice, in_one_shape, instance, numbers, set_fields
+from fastpin.model.angles import from_bottom
+from fastpin.model.checks import as_toml, choice, in_one_shape, instance, numbers, set_fields
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
@@ -215,6 +217,49 @@ def isotropic_material(field: str, problem: Problem, body: Body, subject: str) -
             field, f"the {owner_of(problem, body)} is a laminate, and {subject} is that of isotropic bodies"
         )
     return material
+
+
+def has_outline(problem: Problem) -> bool:
+    """Whether the stress along further edges of the plate is known: it is elastic, and of any outline."""
+    return problem.plate_body.lug.geometry is not None and not problem.pair.plate.is_rigid
+
+
+def further_parts(problem: Problem, body: str, theta: ArrayLike, depth: ArrayLike) -> list[Any]:
+    """The part of a further edge of a plate, :class:`fastpin.lugs.Part`, on which each point lies; None elsewhere.
+
+    `theta` has the angles, rad, and `depth` the distances from the body's edge, m.
+    """
+    angles, below = (each.ravel() for each in np.broadcast_arrays(theta, depth))
+    found: list[Any] = [None] * below.size
+    beyond = np.flatnonzero(below)
+    if beyond.size and owner_of(problem, body) == "plate" and has_outline(problem):
+        away = near_rim(problem, body) * problem.hole_radius + below[beyond]  # type: ignore[arg-type]
+        parts = problem.plate_body.lug.geometry.edges_at(away * np.exp(1j * angles[beyond]))
+        for k, part in zip(beyond.tolist(), parts, strict=True):
+            found[k] = part
+    return found
+
+
+def edge_words(problem: Problem, edge: str, place: complex) -> str:
+    """Words for a place x + iy, m, on a further edge of a plate."""
+    rounding = 1e-12 * abs(place)
+    x, y = (
+        units(problem)["length"].text(0.0 if abs(part) < rounding else part, 3) for part in (place.real, place.imag)
+    )
+    kind = " (a polyline)" if edge in problem.plate_body.lug.geometry.polylines else ""
+    return f"on the edge {as_toml(edge)}{kind}, at x = {x}, y = {y}"
+
+
+def point_words(problem: Problem, body: str, theta: float, depth: float, digits: int = 1) -> str:
+    """Words for a point of a body: its angle and depth below the edge of the hole; or its further edge and place.
+
+    `theta` and `depth` are those of :func:`further_parts`.
+    """
+    if (part := further_parts(problem, body, theta, depth)[0]) is not None:
+        away = near_rim(problem, body) * problem.hole_radius + depth  # type: ignore[arg-type]
+        return edge_words(problem, part.name, cmath.rect(away, theta))
+    below = "" if depth == 0.0 else f", {units(problem)['length'].text(depth, 3)} below the edge"
+    return f"at {from_bottom(theta):z.{digits}f} deg{below}"
 
 
 def near_rim(problem: Problem, body: Body) -> float:

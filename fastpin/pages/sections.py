@@ -21,6 +21,7 @@ from fastpin.figures.fatigue import crack_growth_of, fatigue_of, spectrum_of
 from fastpin.figures.history import gap_of, history_of
 from fastpin.figures.laminates import strength_of
 from fastpin.figures.load_cycle import STRAIGHT, area_doubt, loops_of, slip_of
+from fastpin.figures.outline import outline_plot
 from fastpin.figures.sketch import sketch_of
 from fastpin.figures.states import DrawnStates, InMemory
 from fastpin.figures.stick_slip import stick_slip_plot
@@ -45,7 +46,7 @@ from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.states import (
     bush_line,
     cycle_lines,
-    hoop_line,
+    hoop_lines,
     note_lines,
     quantity_column,
     seat_lines,
@@ -94,7 +95,7 @@ def overview(page: PageParts) -> PageSection:
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
         touched = f"largest contact pressure in all kept states: {pressure}, load point {point}"
         sentences = [touched if largest.peak_pressure else "the pin touches the hole in no kept state"]
-        sentences += [hoop_line(problem, source.held.peaks, body) for body in points.EDGES]
+        sentences += hoop_lines(problem, source.held.peaks)
         sentences += [*bush_line(problem, source.held.peaks).splitlines(), *_seat_lines(source)]
         lines = cycle_lines(problem, source.result.cycles, source.held.peaks)
         many = f"{len(lines):,} blocks of cycles: see hysteresis and slip"
@@ -391,8 +392,9 @@ def stresses(page: PageParts) -> PageSection:
         return PageSection("stresses", "Stresses", [Text(NO_STATE, "missing")])
     parts = drawn_or_reason(lambda: page.album.figure(hoop_plot(InMemory(drawn))))
     peaks = page.source.held.peaks
-    lines = [hoop_line(problem, peaks, body) for body in points.EDGES]
-    parts += [Text(sentence(line)) for line in lines if line]
+    if points.has_outline(problem):
+        parts += drawn_or_reason(lambda: page.album.figure(outline_plot(InMemory(drawn))))
+    parts += [Text(sentence(line)) for line in hoop_lines(problem, peaks)]
     name = "peak_pressure" if problem.surfaces.plate.is_rigid else "peak_hoop"
     largest = peaks[ties.top([extremes.READINGS[name].of(state) for state in peaks])]
     parts += drawn_or_reason(lambda: page.album.figure(map_plot(InMemory(largest))))

@@ -1,7 +1,10 @@
 from . import hoop as hoop
 from . import joint as joint
+from . import outline as outline
 from . import refined as refined
 from . import stress as stress
 from .joint import BushFit as BushFit
+from .outline import OutlineHoop as OutlineHoop
+from .outline import OutlinePeak as OutlinePeak
 from .stress import HoopPeak as HoopPeak
 from .stress import Stress as Stress

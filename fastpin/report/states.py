@@ -18,7 +18,7 @@ from fastpin.assess import outputs
 from fastpin.assess.outputs import ROUNDING
 from fastpin.model import LOADS, Case, Problem, checks, ties
 from fastpin.model.angles import from_bottom, interval_from_bottom
-from fastpin.model.points import Body, edge_body, elastic_bodies
+from fastpin.model.points import EDGES, Body, edge_body, edge_words, elastic_bodies, has_outline
 from fastpin.model.units import Unit, units
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import load_columns
@@ -26,6 +26,7 @@ from fastpin.solver import Interrupted, Result
 from fastpin.states import Regime, State, walking
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.error_bars import known_bar
+from fastpin.states.margins import part_of
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, sizes
 
 LOAD_POINT = "load point"
@@ -116,7 +117,7 @@ def table_rows(
     given = [name for name in LOADS if name not in problem.reactions]
     given_loads = (tuple(state.load[name] for name in given) for state in states)
     if numbers.size < rows.size or outputs.repeats(outputs.row_numbers(given_loads)):
-        columns = state_columns(problem, [states[place] for place in first.tolist()])
+        columns = _compared_columns(problem, [states[place] for place in first.tolist()])
         # A state differs from the same state one cycle before in its number, in a sum, and by rounding.
         own = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
         cells = zip(*(cells for name, _, cells in columns if name not in own), strict=True)
@@ -220,7 +221,12 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[outputs.Col
         If an argument is of another class.
     """
     states = _checked(problem, states)
+    *columns, residual = _compared_columns(problem, states)
+    return [*columns, *_edge_columns(problem, states), residual]
 
+
+def _compared_columns(problem: Problem, states: Sequence[State]) -> list[outputs.Column]:
+    """Return the columns by which rows are compared: those that follow from them take longer."""
     column = partial(quantity_column, problem, states)
     strain = problem.surfaces.beta_star * max((state.peak_pressure for state in states), default=0.0)
     energy = max((abs(state.energy) for state in states), default=0.0)
@@ -232,6 +238,15 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[outputs.Col
     residuals = [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]
     ends = column("rotation", 4, strain), column("dissipation", 4, energy), ("residual", "", residuals)
     return [*columns, *ends]
+
+
+def _edge_columns(problem: Problem, states: Sequence[State]) -> list[outputs.Column]:
+    """Return columns on a plate of any outline: the largest hoop stress at its hole and beyond, and the edge there."""
+    if not has_outline(problem):
+        return []
+    hole = "peak_hoop" if problem.joint.bush is None else "peak_hoop_seat"
+    found = [quantity_column(problem, states, name, 4) for name in (hole, "peak_hoop_outline")]
+    return [*found, ("on the edge", "", [state.outline_peak.edge or "-" for state in states])]
 
 
 def _checked(problem: Problem, states: Sequence[State]) -> list[State]:
@@ -306,6 +321,20 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
     known = [f"{kt} {value:.4g} on the {name} stress" for name, value in ratios.items() if math.isfinite(value)]
     sums = [f"{whole} is {' + '.join(terms).replace('+ -', '- ')}"] if known and len(terms) > 1 else []
     return "; ".join(filter(None, [text, of_loads, *known, *sums]))
+
+
+def hoop_lines(problem: Problem, states: Sequence[State]) -> list[str]:
+    """Return the lines of :func:`hoop_line` of all holes, and one on the further edges of a plate of any outline."""
+    lines = [hoop_line(problem, states, body) for body in EDGES]
+    if has_outline(problem) and states:
+        state = states[ties.top([state.outline_peak.value for state in states])]
+        peak, part = state.outline_peak, part_of(problem, "plate")
+        if peak.edge:
+            value = units(problem)["traction"].text(peak.value, 4)
+            where = f"{edge_words(problem, peak.edge, complex(peak.x, peak.y))}, load point {_point(state)}"
+            text = f"largest hoop stress along the outline in all kept states: {value} {where}"
+            lines.append(f"{text}; {part}" if part else text)
+    return [line for line in lines if line]
 
 
 def bush_line(problem: Problem, states: Sequence[State]) -> str:

@@ -94,6 +94,23 @@ def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
     return curves
 
 
+def outline_curves(states: Sequence[State]) -> list[Curve]:
+    """The hoop stress along the outline and the further holes of a plate of any outline: a curve for each state.
+
+    Columns: the place along the edges, counter-clockwise from the beginning of the outline, x, y, the stress, and the
+    name of the edge. A plate without an outline raises :class:`InputError`.
+    """
+    unit, curves = units(states[0].problem), []
+    for state in states:
+        found = state.outline_hoop_stress()
+        columns: dict[str, np.ndarray] = {}
+        for name, values in (("along the edges", found.along), ("x", found.x), ("y", found.y)):
+            columns |= unit["length"].column(name, values)
+        columns |= unit["traction"].column("hoop stress", found.hoop) | {"edge": np.array(found.edges)}
+        curves.append(Curve({"load point": load_point(state)}, columns))
+    return curves
+
+
 def depth_curves(
     states: Sequence[State], body: points.Body = "plate", angle: float | None = None, depth: float | None = None
 ) -> list[Curve]:
@@ -200,7 +217,8 @@ def field_curves(
     if component == UTILIZATION:
         drawn = ("plate",)
     lug, bush = state.problem.plate_body.lug, state.problem.joint.bush or 1.0
-    if lines := lug.edge_lines:  # a point takes longer there
+    lines = [] if lug.geometry is None else lug.geometry.edge_lines
+    if lines:  # a point takes longer there
         fineness //= 2
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
     deepest = np.minimum(outer, bush * _farthest(lines, theta)) - 1.0

@@ -24,6 +24,7 @@ from fastpin.model.laminate import MODULI, ORDER
 from fastpin.model.loads import ACTING, LATER, LOAD_KIND, LOADS
 from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import SolveOptions
+from fastpin.model.points import has_outline
 from fastpin.model.units import DEGREE, Unit, in_units, printed_loads, units
 from fastpin.solver.result import Result
 from fastpin.states import LoadCycle, State
@@ -205,6 +206,15 @@ STATE = (
     ),
     Output("in_contact", "truth", lambda read: read.state.in_contact),
     *(_quantity(name) for name in QUANTITIES if name not in _RESULTANTS),
+    Output(
+        "peak_hoop_outline_place",
+        of=lambda read: (
+            read.known("peak_hoop_outline", lambda: read.state.outline_peak)
+            if has_outline(read.state.problem) else None
+        ),
+        words="the place of peak_hoop_outline, from the centre of the hole", may_lack=True,
+        parts=(Output("edge", "text"), Output("polyline", "truth"), *outputs.numbers("x y", "length", optional=True)),
+    ),
     Output("unresolved", "texts", allowed=[name for name, each in QUANTITIES.items() if each.edge]),
     Output("peak_hoop_resolved", "truth", optional=True),
     *(

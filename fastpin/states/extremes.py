@@ -68,6 +68,7 @@ MARKS: dict[tuple[str, Side], str] = {
     ("peak_shear", "largest magnitude"): "largest shear",
     ("peak_hoop", "largest"): "largest hoop stress",
     ("peak_hoop_seat", "largest"): "largest hoop stress at the seat",
+    ("peak_hoop_outline", "largest"): "largest hoop stress of the outline",
     ("bush_open_margin", "smallest"): "bush nearest to opening",
     ("bush_least_friction", "largest"): "bush nearest to slip",
     ("seat_slip", "largest magnitude"): "largest slip of the bush",

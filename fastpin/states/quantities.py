@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.model.angles import angle_between, degrees_from_bottom, from_bottom
-from fastpin.model.points import Body, elastic_bodies
+from fastpin.model.points import Body, elastic_bodies, has_outline
 from fastpin.model.problem import Problem
 from fastpin.reading.zones import Interval, is_all_round
 from fastpin.states.regimes import REGIMES
@@ -144,6 +144,15 @@ QUANTITIES: dict[str, Quantity] = {
         "seat, of the assembly", "traction", "assembly", "its part before any load", "seat", True
     ),
     "peak_hoop_seat_loads": _hoop("seat, of the loads", "traction", "loads", "its part of the loads", "seat", True),
+    "peak_hoop_outline": only_where(
+        has_outline,
+        Quantity(
+            "peak hoop outline",
+            "traction",
+            lambda state: state.outline_peak.value,
+            "largest hoop stress along the outline and the further holes of the plate",
+        ),
+    ),
     "joint_ux": Quantity(
         "joint ux",
         "displacement",
@@ -170,6 +179,7 @@ part that press fits leave before any load, and "peak_hoop_loads" the rest; both
 bearing stress and the net-section stress, see :class:`fastpin.reading.HoopPeak`. "peak_hoop_seat" is the largest hoop
 stress of the plate round a bush, at the seat of the bush, with the same parts, NaN without a bush. All are NaN for a
 rigid body.
+"peak_hoop_outline" is :attr:`State.outline_peak`, NaN for a plate without an outline.
 "joint_ux" and "joint_uy" are :meth:`State.joint_displacement`. "bush_open_margin" and "bush_slip_margin" are those of
 :class:`fastpin.reading.BushFit`, NaN without a bush, and without its friction. "regime" is a number of
 :class:`fastpin.states.Regime`, :attr:`State.regime`.

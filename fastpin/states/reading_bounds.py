@@ -26,6 +26,7 @@ from fastpin.model.problem import Problem
 from fastpin.reading.exponents import Coupling
 from fastpin.reading.hoop import AROUND, LEAST_NODES
 from fastpin.reading.joint import AROUND as AROUND_BUSH
+from fastpin.reading.outline import outline_hoop
 from fastpin.reading.peaks import DROP_NODES, LARGEST_FALL, STEEPEST_RISE
 from fastpin.reading.stress import stress_components
 from fastpin.states.stress_map import StressMap, spacings
@@ -117,6 +118,7 @@ class Bounds:
             "peak_shear": lambda: shear_bounds(shear, most * peaks[1], self._coupled),
             "contact_width": lambda: width_bounds(self._grid, status != OPEN),
             "stick_width": lambda: width_bounds(self._grid, sticks),
+            "peak_hoop_outline": lambda: outline_bounds(self._problem, self._grid, block, rows),
         }
         for name in self._names - self._stresses.names:
             self._found[name].append(known[name]() if name in known else _unbounded(len(rows)))
@@ -210,6 +212,17 @@ def shear_bounds(shear: np.ndarray, most: np.ndarray, coupled: bool) -> Pair:
         np.minimum(np.where(sign * shear > 0.0, highest, 0.0).max(axis=1, initial=0.0), cap) for sign in (1.0, -1.0)
     )
     return np.where(negative >= least, -negative, least), np.where(positive >= least, positive, -least)
+
+
+def outline_bounds(problem: Problem, grid: Grid, block: StateBlock, rows: list[int]) -> Pair:
+    """Bounds of the largest hoop stress along the outline of a plate in some states of a block: the value itself."""
+    if problem.seat is not None and block.seat is not None:
+        return outline_bounds(problem.seat, seat_grid(problem, grid), block.seat, rows)
+    loads = block.loads[rows][:, list(STRESSING)]
+    found = outline_hoop(problem, grid, block.pressure[rows], block.shear[rows], loads).hoop
+    slack = ROUNDING * np.abs(found).max(axis=1, initial=0.0)
+    top = found.max(axis=1, initial=-math.inf)
+    return top - slack, top + slack
 
 
 def width_bounds(grid: Grid, inside: np.ndarray) -> Pair:

@@ -16,6 +16,7 @@ from fastpin.kernels.status import OPEN
 from fastpin.model.angles import from_bottom, interval_from_bottom, near_bottom
 from fastpin.model.checks import instance, true_or_false
 from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS, STRESSING
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     # these modules import compiled code, and are loaded when a stress is asked for
     from fastpin.elasticity.tractions import RefinedTractions, Tractions
     from fastpin.reading.joint import BushFit
+    from fastpin.reading.outline import OutlineHoop, OutlinePeak
     from fastpin.reading.stress import HoopPeak, Stress
 
 
@@ -456,6 +458,18 @@ class State(ReadOnly):
             if not is_kept:  # the refined tractions of many states would fill the memory
                 del self.__dict__["refined"]
         return self._hoop_peaks[body]
+
+    def outline_hoop_stress(self) -> OutlineHoop:
+        """The hoop stress along outline and further holes; a plate without an outline raises :class:`InputError`."""
+        own = self._interfaces[-1]
+        loads = np.array([[own.load.get(LOADS[place], 0.0) for place in STRESSING]])
+        found = reading.outline.outline_hoop(own.problem, own.grid, own.pressure[None], own.shear[None], loads)
+        return found._replace(hoop=found.hoop[0])
+
+    @cached_property
+    def outline_peak(self) -> OutlinePeak:
+        """The largest of :meth:`outline_hoop_stress`."""
+        return self.outline_hoop_stress().peak
 
     @cached_property
     def _hoop_peaks(self) -> dict[Body, HoopPeak]:

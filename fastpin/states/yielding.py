@@ -6,6 +6,7 @@ loads. Under a contact the largest stress lies below the edge. A plate of any ou
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,9 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fastpin.model.angles import from_bottom
-from fastpin.model.checks import as_toml
 from fastpin.model.grid import Grid
-from fastpin.model.points import Body, Points, elastic_bodies, known_depth, material_of, near_rim
+from fastpin.model.points import Body, Points, edge_words, elastic_bodies, known_depth, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.ties import top_angle
 from fastpin.model.units import units
@@ -85,6 +85,12 @@ def _depths(wall: float) -> tuple[float, ...]:
     return 0.0, *(depth for k in range(6) if (depth := 0.01 * 2.0**k) < 0.9 * wall)
 
 
+def further_points(problem: Problem) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Points on the further edges of a plate: angles, rad, depths in units of the hole's radius, and names of edges."""
+    (z, names), hole = problem.plate_body.lug.rims, problem.joint.bush or 1.0
+    return np.angle(z), hole * (np.abs(z) - 1.0), names
+
+
 class Places(NamedTuple):
     """The points of a body at which its von Mises stress is looked at.
 
@@ -119,9 +125,9 @@ class Places(NamedTuple):
                 depth.append(np.full(there.size, one.depth))
                 circle += [one] * there.size
         if owner == "plate":
-            (z, names), hole = problem.plate_body.lug.rims, problem.joint.bush or 1.0
-            theta.append(np.angle(z))
-            depth.append(hole * (np.abs(z) - 1.0))
+            angles, below, names = further_points(problem)
+            theta.append(angles)
+            depth.append(below)
             circle += [Circle(owner, circle[0].body, math.nan, name) for name in names]
         return cls(circle[0].body, np.concatenate(theta), np.concatenate(depth), circle)
 
@@ -183,7 +189,6 @@ def place_words(problem: Problem, peak: MisesPeak) -> str:
     """Words for the place of a peak: its depth below the edge if it has one, and its angle; or where on an outline."""
     if peak.circle.is_further:
         away = problem.hole_radius * (near_rim(problem, peak.circle.body) + peak.depth)
-        x, y = (units(problem)["length"].text(away * part(peak.angle), 3) for part in (math.cos, math.sin))
-        return f"on the edge {as_toml(peak.circle.edge)}, at x = {x}, y = {y}"
+        return edge_words(problem, peak.circle.edge, cmath.rect(away, peak.angle))
     depth = units(problem)["length"].text(peak.circle.depth * problem.hole_radius, 3)
     return f"{'' if peak.circle.is_edge else f'{depth} below the edge, '}at {from_bottom(peak.angle):z.1f} deg"

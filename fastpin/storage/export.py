@@ -10,6 +10,7 @@ import h5py
 
 from fastpin.errors import InputError
 from fastpin.model import checks, loads
+from fastpin.model.points import has_outline
 from fastpin.model.units import units_per_thickness
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, load_point
@@ -119,7 +120,8 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
 
     Columns are "load_point", "step", "fraction", the loads ("load_P", "load_Q", ...) and the quantities of
     :data:`fastpin.states.QUANTITIES`. Values are in SI units or in the units of a dimensionless problem, angles in rad;
-    the regime is text. "unresolved" has the names of the quantities that the nodes do not resolve.
+    the regime is text. "peak_hoop_outline_edge" is the name of the edge that governs on the outline, else empty.
+    "unresolved" has the names of the quantities that the nodes do not resolve.
     ``frame.attrs["units"]`` names the unit of every column.
 
     Raises
@@ -141,11 +143,13 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
             "fraction": state.fraction,
             **{f"load_{name}": value for name, value in state.load.items()},
             **{name: each.shown(state) for name, each in QUANTITIES.items()},
+            "peak_hoop_outline_edge": state.outline_peak.edge if has_outline(state.problem) else "",
             "unresolved": " ".join(name for name, each in QUANTITIES.items() if not each.is_resolved(state)),
         }
         for state in result
     ]
-    columns = ["load_point", "step", "fraction", *(f"load_{name}" for name in loads.LOADS), *QUANTITIES, "unresolved"]
+    columns = ["load_point", "step", "fraction", *(f"load_{name}" for name in loads.LOADS), *QUANTITIES]
+    columns += ["peak_hoop_outline_edge", "unresolved"]
     frame = pandas.DataFrame(rows, columns=columns)
     frame.attrs["units"] = {
         **{f"load_{name}": label for name, label in named.items()},

@@ -83,9 +83,7 @@ BARE = (
 
 @pytest.mark.gate
 @pytest.mark.usefixtures("coarse")
-@pytest.mark.parametrize(
-    "kind", [name for name, kind in KINDS.items() if "csv" in kind.options and not kind.of_laminates]
-)
+@pytest.mark.parametrize("kind", [name for name, kind in KINDS.items() if "csv" in kind.options and not kind.only])
 def test_a_figure_and_its_numbers_with_units(of_kind, kind):
     words = printed("plot", of_kind[kind], kind, "-o", "a.svg", "--csv", "a.csv")
     assert words.splitlines()[-1] == "wrote a.svg and a.csv"
@@ -104,7 +102,7 @@ def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, of_kind):
     result = load(stored)
     with mpl.rc_context({"svg.hashsalt": "fastpin"}):
         shown = [name for name, file in of_kind.items() if file == stored]
-        for name in (name for name in shown if not KINDS[name].of_laminates):
+        for name in (name for name in shown if not KINDS[name].only):
             result.plot("memory.svg", kind=name)
             said("plot", stored, name, "-o", "file.svg")
             assert Path("memory.svg").read_bytes() == Path("file.svg").read_bytes(), name
@@ -114,10 +112,10 @@ def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, of_kind):
 @pytest.mark.usefixtures("coarse")
 def test_all_kinds_but_that_of_cycles_show_a_life_of_wear(life):
     for name, kind in KINDS.items():
-        code = 0 if "life" in kind.sources and not kind.of_laminates else 2
+        code = 0 if "life" in kind.sources and not kind.only else 2
         words = said("plot", life, name, "-o", "a.svg", code=code).out
         shows_a_profile = "the figure shows a cycle after 60 cycles\n" in words
-        assert kind.of_laminates or shows_a_profile == (kind.sources == ("result", "life")), name
+        assert kind.only or shows_a_profile == (kind.sources == ("result", "life")), name
 
 
 @pytest.mark.gate

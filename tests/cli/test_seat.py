@@ -16,7 +16,7 @@ from tests.support.commands import printed, refused, said
 from tests.support.faults import fault_of
 from tests.support.seats import BONDED, LOADS, SLIPS, TEXT, sample_case, sample_seat, stored_sample
 
-NOT_OF_STATES = {"scar", "wear", "damage", "gap"} | {name for name, kind in KINDS.items() if kind.of_laminates}
+NOT_OF_STATES = {"scar", "wear", "damage", "gap"} | {name for name, kind in KINDS.items() if kind.only}
 """Kinds that need a life of wear, or have nothing to show of this joint."""
 
 

@@ -9,14 +9,12 @@ import pytest
 
 from fastpin import InputError, Points, solve
 from fastpin.bodies import Compliance, Ring
-from fastpin.lugs import fields
 from fastpin.lugs.fields import lug_of, plate_field
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad, rectangle
-from fastpin.lugs.panels import Fineness
-from fastpin.lugs.plates import hole_compliance, plate_compliance
+from fastpin.lugs.plates import plate_compliance
 from fastpin.states.margins import part_of
 from fastpin.states.yielding import place_words, von_mises_peak
-from tests.support.lugs import disc, lug_with_nose, problem_with, stress_at
+from tests.support.lugs import disc, lug_with_neck, lug_with_nose, problem_with, rough_body, stress_at
 from tests.support.tiers import some_survey
 
 
@@ -148,14 +146,6 @@ def test_sections_through_a_lug_carry_the_load():
         assert moment == pytest.approx(-state.resultants["M"], abs=1e-7)
 
 
-def rough_body(monkeypatch, lug, order=6):
-    """A compliance with its outline, by few nodes."""
-    monkeypatch.setattr(fields, "FINENESS", Fineness(6, 3))
-    matrix = fields.PlateField(lug, 2 * order).matrix[: 2 + 4 * order, : 2 + 4 * order]
-    matrix = 0.5 * (matrix + matrix.T) - hole_compliance(order, lug.kolosov)
-    return Compliance(lug.nu, lug.plane, lug.hole_radius, matrix, outline=json.dumps(lug.document()))
-
-
 def test_points_outside_of_the_plate_have_no_stress(monkeypatch):
     body = rough_body(monkeypatch, lug_with_bolt())
     inside = np.array([1.5, 2.2, -2.2j, 2.2 * np.exp(-0.3j), 0.5 + 4j, -2.2 + 9j, 2.2 + 10j])
@@ -197,10 +187,7 @@ def test_the_outline_of_another_plate_is_refused(monkeypatch):
 @pytest.mark.gate
 def test_largest_stresses_are_looked_for_on_all_edges(monkeypatch):
     """The largest stress is on a narrow neck. Its sharp corners and its held end are named, and left out."""
-    names = ("step", "neck", "top", "neck", "step", "left", "bottom", "right")
-    ends = [0.3 + 3j, 0.3 + 9j, -0.3 + 9j, -0.3 + 3j, -2.2 + 3j, -2.2 - 2.2j, 2.2 - 2.2j, 2.2 + 3j]
-    parts = tuple(Part(name, ends[k - 1], ends[k]) for k, name in enumerate(names))
-    body = rough_body(monkeypatch, Lug(0.3, "stress", 1.0, parts, {"top": "both"}))
+    body = rough_body(monkeypatch, lug_with_neck())
     state = solve(problem_with(body), [{"P": 1.0}], nodes=41)[-1]
     peak = von_mises_peak(state, "plate")
     assert state.stress(Points.at_xy(0.3, 6.0)).von_mises == pytest.approx(1.0 / 0.6, rel=0.01)

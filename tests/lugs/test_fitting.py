@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fastpin.lugs.drawings import polygon
-from fastpin.lugs.fitting import fitted, kinks
-from fastpin.lugs.outline import Part
+from fastpin.lugs.fitting import fitted
+from fastpin.lugs.outline import Part, kinks
 from tests.support.lugs import mesh_edge
 from tests.support.tiers import seeds
 
@@ -65,7 +65,7 @@ def test_sides_without_a_fit_are_kinks():
     outline, arcs = fitted(ellipse, 1e-6)
     assert (len(outline), arcs) == (48, [])
     assert len(kinks(outline)) == 48
-    assert max(kinks(outline)) < 0.25
+    assert max(kinks(outline))[0] < 0.25
     assert fitted(polygon(mesh_edge(40).tolist()), 0.0)[1] == []
 
 

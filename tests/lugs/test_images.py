@@ -7,7 +7,7 @@ import pytest
 
 from fastpin.cracks.dislocations import CrackLine, FreeRim, needed_points, rule, weights
 from fastpin.lugs import images
-from fastpin.lugs.cauchy import HOLE, EdgeField
+from fastpin.lugs.cauchy import EdgeField
 from fastpin.lugs.images import OtherEdges, dislocation
 from fastpin.lugs.outline import Hole, Lug, Part, rectangle
 from fastpin.lugs.panels import Edges, Fineness
@@ -38,7 +38,7 @@ def lame(c):
 def pulled(equations):
     """Tractions in a plate whose hole has the radial traction -sin(theta)/pi, by integrals over all edges."""
     edges = equations.edges
-    on_hole = edges.part_of_node < HOLE
+    on_hole = ~edges.is_further
     given = np.where(on_hole, -edges.z.imag * edges.z / math.pi, 0.0)[:, None]
     (u_x, u_y), (t_x, t_y) = equations.solve(given)
     field = EdgeField.of(edges, equations.kolosov, u_x + 1j * u_y, t_x + 1j * t_y, True)
@@ -114,7 +114,7 @@ def test_edges_of_all_cracks_suit_short_ones(part):
     edges = Edges([first, images.replace(rim, beside=tuple(hole))], images.FINENESS)
     assert images.is_fine(edges, [Part("", 1.0 + 0.0j, 1.0 + part + 0.0j)])
     assert not images.is_fine(edges, [Part("", 1.0 + 0.0j, 1.95 + 0.0j)])
-    assert images._count(edges.z[edges.part_of_node >= HOLE], [Part("", 1.0 + 0.0j, 1.0 + part + 0.0j)]) == 24
+    assert images._count(edges.z[edges.is_further], [Part("", 1.0 + 0.0j, 1.0 + part + 0.0j)]) == 24
 
 
 @pytest.mark.gate

@@ -10,10 +10,12 @@ import pytest
 from fastpin import InputError, Material, MaterialPair, Points, Problem, solve
 from fastpin.bodies import Bushing, Plate, Ring
 from fastpin.damage import fatigue, fatigue_at_distance
+from fastpin.lugs import Lug
 from fastpin.model import FatigueConstants
 from fastpin.report.states import hoop_line
 from fastpin.report.stress import depth_curves, field_curves, hoop_curves
 from fastpin.states.quantities import QUANTITIES, values
+from tests.support.lugs import disc
 from tests.support.refusals import refused
 from tests.support.ring_compliance import held_ring
 
@@ -171,7 +173,8 @@ def test_the_net_section_of_a_ring():
     plain = solve(Problem(PAIR, R, 20e-6, 0.3), [{"P": 1e6}], nodes=101)[-1]
     assert math.isnan(plain.peak_hoop_stress().kt_net)
     ring = held_ring(3.0, 8, PAIR.plate.nu)
-    lug = replace(ring, hole_radius=R, plane=PAIR.plane, outline=json.dumps({"net_section": 0.03}))
+    outline = Lug(PAIR.plate.nu, PAIR.plane, R, disc(3.0 * R), {"rim": "both"}, net_section=0.03).document()
+    lug = replace(ring, hole_radius=R, plane=PAIR.plane, outline=json.dumps(outline))
     for body, width in ((lug, 0.03), (replace(lug, outline=""), math.inf)):
         peak = solve(Problem(PAIR, R, 20e-6, 0.3, plate_body=body), [{"P": 1e6}], nodes=101)[-1].peak_hoop_stress()
         assert peak.net_stress == pytest.approx(1e6 / width)

@@ -14,9 +14,10 @@ from fastpin.bodies import Compliance, Ring
 from fastpin.bodies.compliance import complex_coefficients
 from fastpin.elasticity.stress import plate_stress
 from fastpin.elasticity.tractions import Tractions
-from fastpin.lugs import plates
+from fastpin.lugs import fields, plates
 from fastpin.lugs.outline import Lug, Part, rectangle
 from fastpin.lugs.panels import Fineness
+from fastpin.lugs.plates import hole_compliance
 
 
 def disc(radius: float, gap: float = 0.0) -> tuple[Part, ...]:
@@ -41,6 +42,22 @@ def lug_with_nose(holes=(), **given):
     ends = side, top, -top.conjugate(), -side
     outline = [Part(name, *ends[k : k + 2]) for k, name in enumerate(("right", "top", "left"))]
     return Lug(0.3, "stress", 1.0, (*outline, Part("nose", -side, side, -2.2j)), {"top": "both"}, holes=holes, **given)
+
+
+def lug_with_neck() -> Lug:
+    """A lug on a neck 0.6 R wide and 6 R long, with sharp corners, held at its top."""
+    names = ("step", "neck", "top", "neck", "step", "left", "bottom", "right")
+    ends = [0.3 + 3j, 0.3 + 9j, -0.3 + 9j, -0.3 + 3j, -2.2 + 3j, -2.2 - 2.2j, 2.2 - 2.2j, 2.2 + 3j]
+    parts = tuple(Part(name, ends[k - 1], ends[k]) for k, name in enumerate(names))
+    return Lug(0.3, "stress", 1.0, parts, {"top": "both"})
+
+
+def rough_body(monkeypatch: pytest.MonkeyPatch, lug: Lug, order: int = 6) -> Compliance:
+    """A compliance with its outline, by few nodes."""
+    monkeypatch.setattr(fields, "FINENESS", Fineness(6, 3))
+    matrix = fields.PlateField(lug, 2 * order).matrix[: 2 + 4 * order, : 2 + 4 * order]
+    matrix = 0.5 * (matrix + matrix.T) - hole_compliance(order, lug.kolosov)
+    return Compliance(lug.nu, lug.plane, lug.hole_radius, matrix, outline=json.dumps(lug.document()))
 
 
 def outlined(lug: Lug) -> Compliance:

@@ -141,8 +141,8 @@ report limits -o limits.html
 def plots(subject: str) -> list[str]:
     """The commands that draw every kind of figure of a result, or the kinds that only a life of wear has."""
     lines = []
-    for kind, (_, _, allowed, sources, of_laminates) in KINDS.items():
-        if not of_laminates and subject == ("a.h5" if "result" in sources else "life.h5"):
+    for kind, (_, _, allowed, sources, only) in KINDS.items():
+        if not only and subject == ("a.h5" if "result" in sources else "life.h5"):
             name = f"{kind}.svg"
             states = "--states 2,3" if "states" in allowed and kind != "sketch" else ""
             lines.append(f"plot {subject} {kind} -o {name} {states} {f'--csv {kind}.csv' if 'csv' in allowed else ''}")
