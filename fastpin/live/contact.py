@@ -397,6 +397,19 @@ def _named(given: np.ndarray) -> dict[str, float]:
     return {name: float(value) for name, value in zip(LOADS, given, strict=True) if not np.isnan(value)}
 
 
+def _outline(lug: Any) -> list[Answer]:
+    """The edges of a plate of any outline beyond the hole: lines x, y in m, supports and loads."""
+    loads = {name: load.name for load in lug.loads for name in load.parts}
+    return [
+        {
+            "line": np.stack([lug.hole_radius * line.real, lug.hole_radius * line.imag], axis=1).tolist(),
+            "hold": lug.supports.get(part.name),
+            "load": loads.get(part.name),
+        }
+        for part, line in zip(lug.edges, lug.edge_lines, strict=True)
+    ]
+
+
 def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer:
     """A problem as the page needs it: units, sizes and shapes of the bodies, loads and controls."""
     lug, bush = problem.plate_body.lug, problem.plate_body.bush
@@ -416,6 +429,7 @@ def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer
         "plate": problem.plate_body.kind,
         "bush": None if bush is None else bush.outer_radius,
         "rim": lug.outer_radius if math.isfinite(lug.outer_radius) else None,
+        "outline": None if lug.geometry is None else _outline(lug.geometry),
         "profiles": {name: packed(each.at(around, problem.hole_radius)) for name, each in problem.profiles.items()},
         "profile_words": profile_words(problem),
         "doubts": [str(doubt) for doubt in doubts(problem, None, SolveOptions())],

@@ -11,6 +11,7 @@ import numpy as np
 from fastpin.assess.outputs import ROUNDING, json_ready
 from fastpin.model import LoadHistory, Points, angles
 from fastpin.model.doubts import pressure_doubts
+from fastpin.model.points import has_outline
 from fastpin.states import LoadCycle, State
 from fastpin.states.curves import one_turn, thinned, traction_patches
 from fastpin.states.quantities import sizes
@@ -66,7 +67,8 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         the load, and the displacement on which it does work. The entry "rounding" has a value for each kind of
         quantity: smaller ones are shown as 0, as in tables. The entry "curves" has the tractions as figures draw them,
         with NaN between two contact zones; "pressure" and "shear" are those of the nodes. The entry "hoop" has the part
-        of the assembly, too, if something is pressed before any load, and the stress at the seat of a bush.
+        of the assembly, too, if something is pressed before any load, and the stress at the seat of a bush. The entry
+        "outline" has the largest hoop stress along the outline of the plate, its place and its edge, or None.
     """
     curves = one_turn([thinned(points, CURVE_ERROR * state.peak_pressure) for points in traction_patches(state)]).T
     hoop = None
@@ -89,6 +91,7 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         "status": packed(state.status, "i1"),
         "curves": dict(zip(("degrees", "pressure", "shear"), map(packed, curves), strict=True)),
         "hoop": hoop,
+        "outline": json_ready(state.outline_peak._asdict()) if has_outline(state.problem) else None,
     }
 
 

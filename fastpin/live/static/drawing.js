@@ -2,7 +2,7 @@
 
 import { INK, PRESSURE, REFERENCE, SOFT, WARNING, ofStatus } from "live/colours";
 import { partsOf, valueAt } from "live/curves";
-import { digits } from "live/units";
+import { digits, withUnit } from "live/units";
 
 const REACH = 0.62; // length of the arrow of a load of usual size, in hole radii
 const HIGH = 0.42; // height of the largest pressure, in hole radii
@@ -89,6 +89,7 @@ export class Drawing {
       this.remote(pen, frame, picture);
     }
     this.angles(pen, frame);
+    if (this.history.case.outline) this.plate(pen, frame, picture?.outline);
     this.trail(pen, frame);
     this.loads(pen, frame, picture);
   }
@@ -134,6 +135,39 @@ export class Drawing {
     pen.strokeStyle = "#8d8a83";
     pen.lineWidth = 1;
     pen.stroke();
+  }
+
+  // The whole plate to scale in the corner: edges, supports (thick), loads (dashed), and the governing place.
+  plate(pen, { width, height }, governing) {
+    const { outline, radius, bush, units } = this.history.case, every = outline.flatMap((edge) => edge.line);
+    const [left, right, low, high] = [0, 1].flatMap((k) => [Math.min(...every.map((p) => p[k])), Math.max(...every.map((p) => p[k]))]);
+    const scale = Math.min((0.26 * width) / (right - left), (0.3 * height) / (high - low));
+    const at = ([px, py]) => [8 + (px - left) * scale, 8 + (high - py) * scale];
+    pen.fillStyle = "rgba(255,255,255,.85)";
+    pen.fillRect(0, 0, (right - left) * scale + 16, (high - low) * scale + (governing?.edge ? 30 : 16));
+    for (const { line, hold, load } of outline) {
+      pen.beginPath();
+      for (const place of line) pen.lineTo(...at(place));
+      pen.strokeStyle = hold ? INK : "#8d8a83";
+      pen.lineWidth = hold ? 3 : 1.2;
+      pen.setLineDash(load ? [4, 3] : []);
+      pen.stroke();
+    }
+    pen.setLineDash([]);
+    pen.beginPath();
+    pen.arc(...at([0, 0]), (bush || radius) * scale, 0, 2 * Math.PI);
+    pen.lineWidth = 1.2;
+    pen.strokeStyle = "#8d8a83";
+    pen.stroke();
+    if (!governing?.edge) return;
+    pen.beginPath();
+    pen.arc(...at([governing.x, governing.y]), 3.5, 0, 2 * Math.PI);
+    pen.fillStyle = WARNING;
+    pen.fill();
+    pen.font = "11px sans-serif";
+    pen.textAlign = "left";
+    pen.fillStyle = INK;
+    pen.fillText(`${governing.edge}: ${withUnit(governing.value, units.traction)}`, 8, (high - low) * scale + 24);
   }
 
   // The pin: the hole less its gap, which is enlarged.
