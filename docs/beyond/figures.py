@@ -9,13 +9,31 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from docs.beyond import finite_bodies, interference, memory, rectangular_lug, regimes, rigid_pin, sliding_onset
+from docs.beyond import (
+    finite_bodies,
+    interference,
+    lug_concentration,
+    memory,
+    rectangular_lug,
+    regimes,
+    rigid_pin,
+    sliding_onset,
+)
 from fastpin.assess.outputs import write_csv
 from fastpin.published.records import PaperFigure, save_drawing
 
 FIGURES: dict[str, PaperFigure] = {
     figure.name: figure
-    for subject in (memory, sliding_onset, rigid_pin, finite_bodies, rectangular_lug, interference, regimes)
+    for subject in (
+        memory,
+        sliding_onset,
+        rigid_pin,
+        finite_bodies,
+        rectangular_lug,
+        lug_concentration,
+        interference,
+        regimes,
+    )
     for figure in subject.FIGURES
 }
 """All figures by name."""
