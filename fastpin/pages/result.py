@@ -10,7 +10,7 @@ from pathlib import Path
 from fastpin.casefile.reader import parse_case
 from fastpin.casefile.toml_text import read_text
 from fastpin.errors import CaseFileError, InputError, ReadingError, reading
-from fastpin.model.case import About
+from fastpin.model.case import About, beside_of
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.content import Album, Page, PageSection, Text
 from fastpin.pages.sections import SECTIONS, crack, seat, strength
@@ -55,8 +55,8 @@ def write_report(
         Project, author, revision and date. A field that is not given is that of the stored case.
     case : path, optional
         The case file of the result. Its text is shown on the page. A result in memory is judged by its sections
-        [fatigue] and [crack]; a stored one has its own. Unless given, it is the file beside a stored result that has
-        its name with .toml, if that is a case file of the same problem and loads.
+        [fatigue], [crack] and [strength]; a stored one has its own. Unless given, it is the file beside a stored result
+        that has its name with .toml, if that is a case file of the same problem and loads.
     convergence : Convergence, optional
         A study of the case, which is shown on the page of a result.
     progress : callable, optional
@@ -95,7 +95,7 @@ def write_report(
         source = replace(source, case_text=_case_text(case, source))
         if source.path is None:  # a result in memory does not know how it is to be judged
             given = parse_case(source.case_text, str(case), Path(case).parent)
-            source = replace(source, case=replace(source.case, fatigue=given.fatigue, crack=given.crack))
+            source = replace(source, case=replace(source.case, **beside_of(given)))
     named = replace(source.case, title=title or source.case.title, about=merged(source.case.about, about))
     write_source(replace(source, case=named), target, convergence, progress)
 

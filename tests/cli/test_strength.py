@@ -56,6 +56,8 @@ def test_a_case_with_a_strength_has_its_ratio_and_its_load_at_failure():
     said("report", "case.h5", "-o", "page.html")
     page = Path("page.html").read_text()
     assert lines[1][1:] in page
+    states.report("memory.html", case="case.toml")
+    assert lines[1][1:] in Path("memory.html").read_text()
     (row,) = [row for row in document["margins"] if "first ply" in row["subject"]]
     assert row["margin"] == pytest.approx(found.least_ratio - 1.0)
     assert row["load_point"] == 1.0
