@@ -42,6 +42,9 @@ LEAST_DECADES, MOST_DECADES = 1e-6, 8.0
 BESIDE = (-4.0, -3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0)
 """Places beside the fastest of every fifth degree that are looked at, deg."""
 
+FOLLOWED, ROUGH = 8, 0.8
+"""Places of every fifth degree that are followed, and part of the ligament up to which they are chosen."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Growth(ReadOnly):
@@ -304,8 +307,9 @@ def growth_along_edge(
     states, law, first, last
         See :func:`growth`.
     theta : array_like, optional
-        Angles of the mouths, rad; each degree all round unless given. In a plate of any outline each place takes a
-        second: there it is every fifth degree, and each degree beside the fastest one.
+        Angles of the mouths, rad; each degree all round unless given. In a plate of any outline each place takes up to
+        a second. There eight of every fifth degree are chosen by the stress alone, as if the hole had no other edges,
+        then each degree beside the fastest one.
     angle : float
         Direction of the cracks from the radius, rad.
     body : {"plate", "seat"}
@@ -466,8 +470,8 @@ class _Following(NamedTuple):
     def along(self, crack: Crack, theta: ArrayLike | None, progress: GrowthProgress | None) -> EdgeGrowth:
         """The growth of one crack at many places, by default at each degree.
 
-        In a plate of any outline each place has weights of its own. There every fifth degree comes first, then each
-        degree beside the fastest one.
+        In a plate of any outline each place has weights of its own. There every fifth degree is looked at as if the
+        hole had no other edges. The fastest places follow, then each degree beside the fastest one.
         """
         is_round = self.edge.beyond.is_round
         count = 360 if is_round else 72
@@ -475,30 +479,51 @@ class _Following(NamedTuple):
         every = every if theta is None else numbers("theta", theta).ravel()
         if not every.size:
             raise InputError("theta", "must be at least one angle")
-        beside = np.radians(BESIDE) if theta is None and not is_round else np.zeros(0)
-        grown: list[Growth] = []
+        every = np.array([angles.near_bottom(place) for place in every])
+        rough = self if theta is not None or is_round else self.beside_hole(crack, every)
+        total, done = every.size + (0 if rough is self else len(BESIDE) + FOLLOWED), 0
 
-        def follow(places: np.ndarray) -> None:
-            places = np.array([angles.near_bottom(place) for place in places])
-            # Forty places need some 30,000 points in each state.
-            for part in np.array_split(places, max(1, places.size // 40 if is_round else places.size)):
-                start, turns = (crack, part) if is_round else (replace(crack, theta=part[0]), np.zeros(1))
-                lengths = self.lengths(start)
-                K = self.intensities(start, turns, lengths)
+        def follow(how: _Following, places: np.ndarray) -> list[Growth]:
+            nonlocal done
+            found, alike = [], how.edge.beyond.is_round
+            # Forty places need some 30,000 points in each state; a plate of any outline keeps 5,000 for other states.
+            size = 40 if is_round else 12 if alike else 1
+            for part in np.array_split(places, max(1, places.size // size)):
+                start, turns = (crack, part) if alike else (replace(crack, theta=part[0]), np.zeros(1))
+                lengths = how.lengths(start)
+                K = how.intensities(start, turns, lengths)
                 for k, place in enumerate(part.tolist()):
-                    grown.append(self.read(replace(crack, theta=place), lengths, K[:, k]))
+                    found.append(how.read(replace(crack, theta=place), lengths, K[:, k]))
+                    done += 1
                     if progress is not None:
-                        progress(len(grown), every.size + beside.size)
+                        progress(done, total)
+            return found
 
-        follow(every)
-        if beside.size:
-            follow(grown[_fastest(grown)].crack.theta + beside)
+        grown = follow(rough, every)
+        if rough is not self:
+            life, arrest = np.array([(one.life, one.arrest) for one in grown]).T
+            first = np.lexsort((-np.where(np.isnan(arrest), np.inf, arrest), life))[:FOLLOWED]
+            grown = follow(self, np.sort(every[first]))
+            places = np.array(
+                [angles.near_bottom(grown[_fastest(grown)].crack.theta + each) for each in np.radians(BESIDE)]
+            )
+            grown += follow(self, np.setdiff1d(places, [one.crack.theta for one in grown]))
             grown.sort(key=lambda one: one.crack.theta)
         at = _fastest(grown)
         places, life, arrest = np.array([(one.crack.theta, one.life, one.arrest) for one in grown]).T
         fastest = self.grown(grown[at].crack)
         life[at], arrest[at] = fastest.life, fastest.arrest
         return EdgeGrowth(places, life, arrest, fastest)
+
+    def beside_hole(self, crack: Crack, theta: np.ndarray) -> _Following:
+        """The same for a hole without other edges, up to a length that fits into the plate everywhere; else itself."""
+        shortest = min(self.edge.ligament(replace(crack, theta=place)) for place in theta)
+        end = min(self.ends[1], ROUGH * shortest)
+        return (
+            self
+            if end < 1.1 * self.ends[0]
+            else self._replace(edge=self.edge._replace(others=None), ends=(self.ends[0], end))
+        )
 
     def doubts(self, crack: Crack, lengths: np.ndarray, K: np.ndarray) -> tuple[InputWarning, ...]:
         """Doubts about a crack with these intensities at lengths, shape (states, lengths, 2)."""

@@ -170,7 +170,7 @@ def check_length(field: str, problem: Problem, crack: Any, longest: float, part:
     if edges is None or (crack.theta is None and crack.place is None):
         return
     line, size = edges.line(crack.theta, crack.angle), edges.radius * radius
-    ligament, known = edges.ligament(*line) * size, MOST_OF_LIGAMENT * edges.known(*line) * size
+    ligament, known = edges.ligament(*line) * size, edges.known(*line) * size
     if is_above(longest, part * ligament):
         start, along = edges.start(*line)
         end = radius * start + ligament * along
@@ -178,8 +178,8 @@ def check_length(field: str, problem: Problem, crack: Any, longest: float, part:
         words = f"must end within {within} of {length.text(ligament)}, not be {length.text(longest)}"
         place = f"x = {length.text(end.real)}, y = {length.text(end.imag)}"
         raise InputError(field, f"{words}: the line of the crack leaves the plate at {place}")
-    if known < MOST_OF_LIGAMENT * ligament and is_above(longest, known):
-        words = f"must be at most {length.text(known)}, not {length.text(longest)}"
+    if known < ligament and is_above(longest, MOST_OF_LIGAMENT * known):
+        words = f"must be at most {length.text(MOST_OF_LIGAMENT * known)}, not {length.text(longest)}"
         raise InputError(
             field, f"{words}: a longer crack comes too near to another edge, or its mirror image to the plate"
         )
