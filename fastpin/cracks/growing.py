@@ -480,8 +480,9 @@ class _Following(NamedTuple):
         if not every.size:
             raise InputError("theta", "must be at least one angle")
         every = np.array([angles.near_bottom(place) for place in every])
-        rough = self if theta is not None or is_round else self.beside_hole(crack, every)
-        total, done = every.size + (0 if rough is self else len(BESIDE) + FOLLOWED), 0
+        searched = theta is None and not is_round
+        rough = self.beside_hole(crack, every) if searched else self
+        total, done = every.size + FOLLOWED * (rough is not self) + len(BESIDE) * searched, 0
 
         def follow(how: _Following, places: np.ndarray) -> list[Growth]:
             nonlocal done
@@ -504,6 +505,7 @@ class _Following(NamedTuple):
             life, arrest = np.array([(one.life, one.arrest) for one in grown]).T
             first = np.lexsort((-np.where(np.isnan(arrest), np.inf, arrest), life))[:FOLLOWED]
             grown = follow(self, np.sort(every[first]))
+        if searched:
             places = np.array(
                 [angles.near_bottom(grown[_fastest(grown)].crack.theta + each) for each in np.radians(BESIDE)]
             )
