@@ -468,14 +468,9 @@ class _Following(NamedTuple):
         return self.read(crack, lengths, K, found, error)
 
     def along(self, crack: Crack, theta: ArrayLike | None, progress: GrowthProgress | None) -> EdgeGrowth:
-        """The growth of one crack at many places, by default at each degree.
-
-        In a plate of any outline each place has weights of its own. There every fifth degree is looked at as if the
-        hole had no other edges. The fastest places follow, then each degree beside the fastest one.
-        """
+        """The growth of one crack at many places; by default see :func:`growth_along_edge`."""
         is_round = self.edge.beyond.is_round
-        count = 360 if is_round else 72
-        every = np.linspace(-1.5 * np.pi, 0.5 * np.pi, count, endpoint=False)
+        every = np.linspace(-1.5 * np.pi, 0.5 * np.pi, 360 if is_round else 72, endpoint=False)
         every = every if theta is None else numbers("theta", theta).ravel()
         if not every.size:
             raise InputError("theta", "must be at least one angle")
@@ -506,10 +501,8 @@ class _Following(NamedTuple):
             first = np.lexsort((-np.where(np.isnan(arrest), np.inf, arrest), life))[:FOLLOWED]
             grown = follow(self, np.sort(every[first]))
         if searched:
-            places = np.array(
-                [angles.near_bottom(grown[_fastest(grown)].crack.theta + each) for each in np.radians(BESIDE)]
-            )
-            grown += follow(self, np.setdiff1d(places, [one.crack.theta for one in grown]))
+            middle = grown[_fastest(grown)].crack.theta
+            grown += follow(self, np.array([angles.near_bottom(middle + each) for each in np.radians(BESIDE)]))
             grown.sort(key=lambda one: one.crack.theta)
         at = _fastest(grown)
         places, life, arrest = np.array([(one.crack.theta, one.life, one.arrest) for one in grown]).T
@@ -520,12 +513,8 @@ class _Following(NamedTuple):
     def beside_hole(self, crack: Crack, theta: np.ndarray) -> _Following:
         """The same for a hole without other edges, up to a length that fits into the plate everywhere; else itself."""
         shortest = min(self.edge.ligament(replace(crack, theta=place)) for place in theta)
-        end = min(self.ends[1], ROUGH * shortest)
-        return (
-            self
-            if end < 1.1 * self.ends[0]
-            else self._replace(edge=self.edge._replace(others=None), ends=(self.ends[0], end))
-        )
+        end, alone = min(self.ends[1], ROUGH * shortest), self.edge._replace(others=None)
+        return self if end < 1.1 * self.ends[0] else self._replace(edge=alone, ends=(self.ends[0], end))
 
     def doubts(self, crack: Crack, lengths: np.ndarray, K: np.ndarray) -> tuple[InputWarning, ...]:
         """Doubts about a crack with these intensities at lengths, shape (states, lengths, 2)."""
