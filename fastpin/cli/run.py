@@ -339,11 +339,13 @@ class RunReport:
 
     def _turning(self, held: Held) -> list[State]:
         """The states of the last cycle, or of a spectrum. None of too many, unless a seat needs them."""
-        first, last = choice.span_of(held.result.cycles[-1]) if held.result.cycles else (0, len(self.case.history))
+        cycles = held.result.cycles
+        if not (cycles or _is_spectrum(self.case)):
+            return []
+        first, last = choice.span_of(cycles[-1]) if cycles else (0, len(self.case.history))
         size = np.count_nonzero((held.points >= first) & (held.points <= last))
-        is_told = held.result.cycles or _is_spectrum(self.case)
-        is_short = size <= assess.fatigue.MOST_STOPS or (held.result.cycles and self.case.problem.seat is not None)
-        return held.between(first, last) if is_told and is_short else []
+        is_short = size <= assess.fatigue.MOST_STOPS or (cycles and self.case.problem.seat is not None)
+        return held.between(first, last) if is_short else []
 
     def _paragraphs(
         self, held: Held, cycle: LoadCycle | None, found: Mapping[str, Any]
