@@ -191,7 +191,7 @@ STRIP = {
     0.8: 11.955,
     0.9: 34.633,
 }
-"""K over s sqrt(pi a) of an edge crack through this part of a strip in tension, as quoted after Kaya, Erdogan (1987)."""
+"""K over s sqrt(pi a) of an edge crack through this part of a strip in tension; quoted after Kaya, Erdogan (1987)."""
 
 
 @pytest.mark.gate
