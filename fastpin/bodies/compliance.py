@@ -395,11 +395,6 @@ class Compliance(PlateBody):
     def along_edges(self) -> Any:
         return self._inside.along_edges if self.outline else None
 
-    def coefficients(self, rim: Rim, order: int, grid: Grid, tractions: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """As :meth:`_column`, of states with nodal `tractions` (k, 2n), pressure and then shear, and `loads` (k, 4)."""
-        warm = _thermal_stress(rim, 1.0) * loads[:, -1:]
-        return np.hstack([tractions @ _kept_hats(order, grid).T, loads[:, :-1], warm])
-
     def looked_at(self, radius: float, length: InWords) -> str:
         if not self.outline:
             return "near the hole only"
@@ -532,6 +527,15 @@ def _hats(order: int, grid: Grid) -> np.ndarray:
 
 
 _kept_hats = functools.lru_cache(maxsize=2)(_hats)  # the states of a history ask for the same ones
+
+
+def state_columns(rim: Rim, order: int, grid: Grid, tractions: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    """Coefficients of the tractions on the hole, own loads and G times the free thermal strain, (k, 2 + 4 K + 4).
+
+    `tractions` (k, 2n) are the nodal pressures and then shears, and `loads` (k, 4) those that stress the plate.
+    """
+    warm = _thermal_stress(rim, 1.0) * loads[:, -1:]
+    return np.hstack([tractions @ _kept_hats(order, grid).T, loads[:, :-1], warm])
 
 
 def _in_basis(waves: np.ndarray) -> np.ndarray:

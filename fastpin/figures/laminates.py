@@ -95,6 +95,13 @@ def from_label(angle: int) -> str:
 
 
 def strength_plot(
+    subject: Subject, states: StateChoice = None, criterion: PlyCriterion | None = None, depth: float | None = None
+) -> Plot:
+    """Return the strength ratio round the hole as in the section [strength] of a stored case, see `plot_strength`."""
+    return _strength_plot(subject, states, criterion, depth, subject.beside("strength"))
+
+
+def _strength_plot(
     subject: Subject,
     states: StateChoice = None,
     criterion: PlyCriterion | None = None,
@@ -103,14 +110,14 @@ def strength_plot(
 ) -> Plot:
     """Draw the strength ratio of the first ply round the hole.
 
-    A ply fails where the ratio is 1 or less. The points lie as in `how`, by default as in the section [strength] of a
-    stored case, else on the edge. A `depth` below the edge, m, and a `criterion` replace those of `how`. See
-    :func:`fastpin.damage.joint_strength` for the criteria, and :func:`fastpin.plot_tractions` for the `states`.
+    A ply fails where the ratio is 1 or less. The points lie as in `how`, by default on the edge. A `depth` below the
+    edge, m, and a `criterion` replace those of `how`. See :func:`fastpin.damage.joint_strength` for the criteria, and
+    :func:`fastpin.plot_tractions` for the `states`.
     """
-    return strength_of(subject.states(states), how or subject.beside("strength"), criterion, depth)
+    return strength_of(subject.states(states), how, criterion, depth)
 
 
-plot_strength = plotter("plot_strength", strength_plot, InMemory)
+plot_strength = plotter("plot_strength", _strength_plot, InMemory)
 
 
 def strength_of(

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fastpin.bodies.compliance import state_columns
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid
 from fastpin.model.points import has_outline
@@ -93,7 +94,7 @@ def outline_hoop(
         raise InputError("plate_body", "has no outline that is elastic: no other edge than that of the hole is known")
     body, radius = problem.plate_body, problem.hole_radius
     edges = body.along_edges
-    column = body.coefficients(problem.joint.hole, edges.order, grid, np.hstack([pressure, shear]), loads)  # type: ignore[attr-defined]
+    column = state_columns(problem.joint.hole, edges.order, grid, np.hstack([pressure, shear]), loads)
     x, y = (np.where(np.abs(part) < 1e-12, 0.0, radius * part) for part in (edges.z.real, edges.z.imag))
     polylines = body.lug.geometry.polylines
     return OutlineHoop(x, y, radius * edges.along, edges.names, polylines, column @ edges.columns.T)
