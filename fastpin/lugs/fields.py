@@ -54,7 +54,7 @@ class EdgeHoop(NamedTuple):
     names : list of str
         Their edges.
     columns : ndarray, shape (m, 2 + 4 K + 4)
-        The stress for unit coefficients, as those of :meth:`fastpin.bodies.Compliance.coefficients`.
+        The stress for unit coefficients, as those of :func:`fastpin.bodies.compliance.state_columns`.
     """
 
     order: int
