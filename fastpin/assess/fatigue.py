@@ -135,6 +135,11 @@ class Assessed(NamedTuple):
         return self.how.method == "edge" and self.how.angles is None
 
 
+def half(progress: outputs.Follow | None, begin: float) -> outputs.Follow | None:
+    """Return the progress of a half of the work, which begins at this part of it."""
+    return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
+
+
 def find(case: Case, held: Held | None, progress: outputs.Follow | None = None) -> Assessed | None:
     """Assess the fatigue of a whole result as its case asks for it; None if the case does not."""
     if case.fatigue is None:
@@ -143,12 +148,9 @@ def find(case: Case, held: Held | None, progress: outputs.Follow | None = None) 
         return Assessed(case.fatigue, [], [], "the history has not come to its end")
     result = held.whole()
 
-    def half(begin: float) -> outputs.Follow | None:
-        return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
-
     try:
-        found = result.assessed_fatigue(case.fatigue, half(0.0))
-        return Assessed(case.fatigue, found, result.assessed_reserves(case.fatigue, half(0.5)))
+        found = result.assessed_fatigue(case.fatigue, half(progress, 0.0))
+        return Assessed(case.fatigue, found, result.assessed_reserves(case.fatigue, half(progress, 0.5)))
     except InputError as error:
         return Assessed(case.fatigue, [], [], str(error))
 

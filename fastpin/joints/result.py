@@ -157,12 +157,17 @@ class JointResult(Sequence[JointState]):
         return found
 
     @property
+    def _loads(self) -> np.ndarray:
+        """Loads at the states, shape (states, loads)."""
+        return np.array([list(state.load.values()) for state in self.states])
+
+    @property
     def last_cycle(self) -> tuple[JointState, ...]:
         """The states of the last cycle, from the corner at which it begins; none without a cycle.
 
         A cycle is the shortest run of corners at the end of the history that repeats the loads of the corners before.
         """
-        length = _cycle_length(np.array([list(state.load.values()) for state in self.states]))
+        length = _cycle_length(self._loads)
         return self.states[-length - 1 :] if length else ()
 
     def assessed_fatigue(
@@ -191,7 +196,7 @@ class JointResult(Sequence[JointState]):
         """
         how = FatigueAssessment() if how is None else instance("how", how, FatigueAssessment, "a FatigueAssessment")
         check_callable("progress", progress)
-        check_fatigue(self.joint, how, np.array([list(state.load.values()) for state in self.states]))
+        check_fatigue(self.joint, how, self._loads)
         states, known = self.states if how.over == "history" else self.last_cycle, _assessed_sections(self.joint, how)
         found = []
         for done, place in enumerate(known):

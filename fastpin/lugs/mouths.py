@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Callable
 from typing import NamedTuple
@@ -10,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.lugs.outline import Lug, distances
+from fastpin.lugs.outline import Lug, distances, turn_between
 from fastpin.lugs.panels import LEAST_TURN, TOUCHING
 from fastpin.model.checks import as_toml
 
@@ -85,8 +84,7 @@ class Mouth(NamedTuple):
             for one, following, is_near in ((other, part, share < least), (part, other, share > 1.0 - least)):
                 if not is_near or abs(following.start - one.end) > TOUCHING:
                     continue
-                turn = cmath.phase(complex(following.direction(np.zeros(1))[0] / one.direction(np.ones(1))[0]))
-                if abs(turn) > LEAST_TURN:
+                if abs(turn_between(one, following)) > LEAST_TURN:
                     x, y = length(one.end.real), length(one.end.imag)
                     raise InputError("place", f"lies at the corner x = {x}, y = {y}: a crack begins beside it")
                 middle = following.at(np.array([0.5]))

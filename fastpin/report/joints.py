@@ -16,7 +16,7 @@ from fastpin.errors import InputError
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, JointState, SectionDamage, SectionMargin
 from fastpin.model import angles, ties
 from fastpin.model.assessment import FatigueAssessment
-from fastpin.model.points import owner_of
+from fastpin.model.points import owner_of, point_words
 from fastpin.model.units import Unit, units, units_of
 from fastpin.states.margins import over_yield, over_yield_words, smallest_margin
 from fastpin.states.quantities import point_name
@@ -65,19 +65,15 @@ def judged(
     progress: outputs.Follow | None = None,
 ) -> Judged:
     """Find the margins of the strengths of a result, and its fatigue if `how` says how and the history is complete."""
-
-    def half(begin: float) -> outputs.Follow | None:
-        return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
-
-    margins = result.margins(half(0.0))
+    known = result.margins(fatigue.half(progress, 0.0))
     if how is None:
-        return Judged(result, margins, None, [])
+        return Judged(result, known, None, [])
     if not is_complete:
-        return Judged(result, margins, how, [], "the history has not come to its end")
+        return Judged(result, known, how, [], "the history has not come to its end")
     try:
-        return Judged(result, margins, how, result.assessed_fatigue(how, half(0.5)))
+        return Judged(result, known, how, result.assessed_fatigue(how, fatigue.half(progress, 0.5)))
     except InputError as error:
-        return Judged(result, margins, how, [], str(error))
+        return Judged(result, known, how, [], str(error))
 
 
 def describe(judged: Judged) -> str:
@@ -168,8 +164,7 @@ def fatigue_lines(judged: Judged) -> list[str]:
         return []
     if judged.reason:
         return ["", f"fatigue: not known, {judged.reason}"]
-    over, length = judged.over, joint_units(judged.result.joint)["length"]
-    cells = []
+    over, cells = judged.over, []
     for pin, plate, found in judged.damages[:MOST_LISTED]:
         spot, owner = found.hot_spot, owner_of(found.problem, found.body)
         name = f"{pin} in {plate}, {'hole' if found.body == 'plate' else owner}, {criterion_title(found.criterion)}"
@@ -177,8 +172,7 @@ def fatigue_lines(judged: Judged) -> list[str]:
             cells.append((name, "no damage", "", ""))
             continue
         median = f", median {spot.life * 10.0**found.shift:.4g}" if found.shift else ""
-        below = "" if spot.depth == 0.0 else f", {length.text(spot.depth, 3)} below the edge"
-        where = f"at {angles.from_bottom(spot.theta):z.2f} deg{below}"
+        where = point_words(found.problem, found.body, spot.theta, spot.depth, 2)
         mark = over_yield_words(over.get((pin, plate), {}), owner)
         cells.append((name, f"life {spot.life:.4g} {how.passes}{median}", f"damage {spot.damage:.4g}", where + mark))
     head = f"fatigue over {fatigue.assessment_words(how)}, with the stresses at the load points:"

@@ -164,7 +164,7 @@ class SoftOperator(Operator):
 def system_with_wear(system: System, depth: np.ndarray, softness: np.ndarray | None = None) -> System:
     """The system with one more load, the last one: wear. Its unit opens the gap by `depth` (n,).
 
-    Where the wear goes on with the pressure, a pressure N opens the gap at its node by `softness` (n,) times N too.
+    The wear grows with the pressure. Each pressure N also opens the gap at its node, by `softness` (n,) times N.
     """
     column = np.concatenate([depth, np.zeros_like(depth)])
     loads, columns = (np.column_stack([each, column]) for each in (system.loads, system.drive.columns))
