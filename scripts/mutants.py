@@ -47,6 +47,7 @@ NEAR = {
     "elasticity": ("solver", "states", "verification", "whole"),
     "reading": ("states", "solver", "report", "whole"),
     "solver": ("states", "storage", "verification", "whole"),
+    "narrow": ("solver", "whole"),
     "states": ("reading", "report", "solver", "studies", "whole"),
     "damage": ("cracks", "report", "studies"),
     "cracks": ("report", "studies", "cli"),

@@ -17,7 +17,7 @@ import math
 from collections import OrderedDict
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -127,6 +127,8 @@ class System:
         only. None for a system of its own.
     radius : float
         Radius of the contact over the R of the units.
+    needs_windows : bool
+        Whether solvers work on windows of neighbouring nodes: a :class:`fastpin.narrow.LargeSystem`.
     """
 
     problem: Problem
@@ -147,6 +149,8 @@ class System:
     bodies: BodyTerms | None = None
     held_as: System | None = None
     radius: float = 1.0
+
+    needs_windows: ClassVar[bool] = False
 
     @classmethod
     def build(cls, problem: Problem, grid: Grid, force: float) -> System:

@@ -14,7 +14,8 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from fastpin.elasticity.large import build_system
+from fastpin.drift.friction import follow_friction, followed_problem
+from fastpin.elasticity.build import build_system
 from fastpin.elasticity.system import IN_PLACE, System
 from fastpin.errors import InputError
 from fastpin.model.acting import MOST_LOAD, check_loads
@@ -37,7 +38,6 @@ from fastpin.sessions.growth import (
 from fastpin.sessions.place import Loads, Place, changed_problem, check_nodes
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
-from fastpin.solver.followed import follow_friction, followed_problem
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Run

@@ -12,10 +12,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fastpin.elasticity.large import latest_system
+from fastpin.elasticity.build import latest_system
 from fastpin.elasticity.system import System
-from fastpin.model.angles import angle_between
-from fastpin.model.grid import Grid, graded_size
+from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE, THERMAL, M, P, Q
 from fastpin.model.options import SolveOptions
@@ -27,7 +26,6 @@ from fastpin.solver.path import follow_whole
 from fastpin.solver.rest import climb_angle
 from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.step import pieces, pushes
-from fastpin.solver.survey import survey
 from fastpin.solver.tableau import TableauMemory
 
 log = logging.getLogger(__name__)
@@ -40,12 +38,6 @@ QUICK_NODES = 61
 
 WHOLE = 5.6
 """Length of an arc, rad. A wider arc becomes the whole circle."""
-
-LEAST_ACROSS = (10, 20)
-"""Nodes across the narrowest contact of a graded grid, at least; more where a contact gets lost on the first grid."""
-
-MOST_GRADED = 20_000
-"""Nodes of a graded grid, at most, unless the user asks for more."""
 
 
 class CoarseRun(Run):
@@ -82,52 +74,6 @@ def candidate_grids(
     yield Grid.circle(nodes, start + _shift_to_node(problem, start, 2.0 * math.pi / nodes, values))
 
 
-def narrow_grids(
-    problem: Problem, values: np.ndarray, force: float, options: SolveOptions, progress: RunProgress | None = None
-) -> Iterator[Grid]:
-    """Yield graded grids with at least :data:`LEAST_ACROSS` nodes on every contact of a history.
-
-    A wide contact has no fewer nodes than on an arc of equally spaced ones.
-
-    Parameters
-    ----------
-    problem, values, force, progress
-        See :func:`candidate_grids`.
-    options : SolveOptions
-        A grid has more nodes than its ``nodes`` where so many are needed, up to :data:`MOST_GRADED`. There is none if
-        the history could not be surveyed.
-    """
-    first_part = float(options.fractions[0]) if options.keep_rule.inside else 1.0
-    places = survey(problem, _outline(problem, values), force, first_part, progress)
-    if not places:
-        return
-    distinct: list[tuple[float, float]] = []  # without each place that lies on a narrower place
-    for angle, width in sorted(places, key=lambda place: place[1]):
-        if not any(abs(float(angle_between(angle, other))) < 0.25 * narrower for other, narrower in distinct):
-            distinct.append((angle, width))
-    start, length = _reach(places)
-    for across in LEAST_ACROSS:
-        width = across * length / options.nodes  # as dense everywhere as equally spaced nodes
-        between = [(float(angle), width) for angle in start + np.arange(0.0, length + 0.5 * width, 0.5 * width)]
-        needed = graded_size(distinct + between, across)
-        if needed > max(MOST_GRADED, options.nodes):
-            log.info("the narrow contacts of this history take %d nodes: too many", needed)
-            return
-        yield Grid.graded(distinct + between, max(options.nodes, needed), first_direction(problem, values))
-
-
-def _reach(places: list[tuple[float, float]]) -> tuple[float, float]:
-    """Start and length of the shortest arc, rad, that holds all places."""
-    starts = np.array([(angle - 0.5 * width) % (2.0 * math.pi) for angle, width in places])
-    order = np.argsort(starts)
-    starts, widths = starts[order], np.array([width for _, width in places])[order]
-    reached = np.maximum.accumulate(starts + widths)
-    reached = np.maximum(reached, reached[-1] - 2.0 * math.pi)  # the last places may go on beyond the first
-    gaps = np.r_[starts[1:], starts[0] + 2.0 * math.pi] - reached
-    widest = int(np.argmax(gaps))
-    return float(starts[(widest + 1) % starts.size]), 2.0 * math.pi - max(float(gaps[widest]), 0.0)
-
-
 def _touched_arc(
     problem: Problem, values: np.ndarray, force: float, nodes: int, progress: RunProgress | None
 ) -> tuple[float, float] | None:
@@ -139,7 +85,7 @@ def _touched_arc(
     # With a gap, or where a temperature changes the fit, the pin may touch anywhere.
     may_touch = problem.gap or values[:, THERMAL].any()
     arc = None if may_touch else _estimated_arc(problem, values)
-    values = _outline(problem, _without_repetition(values))
+    values = outermost_corners(problem, _without_repetition(values))
     quick = _quick_arc(problem, values, arc, force, progress) if nodes < COARSE_NODES else None
     if quick is not None:
         return quick
@@ -267,7 +213,7 @@ def _without_repetition(values: np.ndarray) -> np.ndarray:
     return values[: 1 + max(first.values())]
 
 
-def _outline(problem: Problem, values: np.ndarray) -> np.ndarray:
+def outermost_corners(problem: Problem, values: np.ndarray) -> np.ndarray:
     """The outermost corners of a long history, in their order. All loads of the history lie between them."""
     if len(values) <= 200:
         return values

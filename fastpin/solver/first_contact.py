@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
-from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
@@ -39,7 +39,6 @@ from fastpin.solver.path import PathStep, StepLostError, follow_whole
 from fastpin.solver.rest import SHAPING, bend, hole_gap, place_between, put_at_rest, release, rest_position
 from fastpin.solver.step import is_pushed, presses
 from fastpin.solver.tableau import TableauMemory
-from fastpin.solver.window import SecondPlaceError, Window
 
 FIRST_BESIDE = 2
 """Nodes on either side of the nearest node. The iteration for the first contact begins with all these closed."""
@@ -283,20 +282,11 @@ def _first_contact_from(system: System, resting: Configuration, way: Way, steady
     """
     begins, before, after, _ = way
     most_part = _steady_part(system, resting, (1.0 - begins) * (after - before)) if steady else 1.0
-    if not isinstance(system, LargeSystem):
+    if not system.needs_windows:
         return _first_patch(system, resting, way, most_part)
-    nodes = resting.closed
-    for _ in range(10):  # the pin may also touch outside of a window
-        window = Window(system, nodes)
-        try:
-            patch, part = _first_patch(window.system, resting.part(window.nodes), way, most_part)
-            return window.paste(patch, resting), part
-        except SecondPlaceError as second:
-            nodes = nodes | second.nodes
-        except ArcError:
-            nodes = nodes.copy()
-            nodes[window.nodes] = True
-    raise ResolutionError(NARROW)
+    from fastpin.narrow import begun_in_window
+
+    return begun_in_window(system, resting, partial(_first_patch, way=way, most_part=most_part))
 
 
 def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float, np.ndarray, np.ndarray] | None:

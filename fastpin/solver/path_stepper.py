@@ -5,13 +5,15 @@ Where a path is lost, a contact that has just opened is released, and a pin that
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Protocol
+
 import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.model.loads import FRICTION_CHANGE, LOADS, M
 from fastpin.solver.configuration import Configuration
-from fastpin.solver.drift import DriftPath
 from fastpin.solver.driven import can_float
 from fastpin.solver.errors import (
     CUT_OFF,
@@ -33,6 +35,24 @@ FEW_CLOSED = 8
 """A contact of at most this many nodes, lost during a complete unloading, has just opened."""
 
 
+class Path(Protocol):
+    """A straight change of the load that is followed: a :class:`PathStep`, or a :class:`fastpin.drift.DriftPath`."""
+
+    now: Configuration
+    rebuilds: int
+    resettled: int
+
+    @property
+    def touched(self) -> np.ndarray: ...
+    @property
+    def events(self) -> int: ...
+    @property
+    def exchanges(self) -> int: ...
+
+    def follow(self, stop: float, report: Callable[[float], None] | None = None) -> Configuration:
+        """Follow the path up to the fraction `stop` and return the configuration there."""
+
+
 class PathStepper:
     """The path solver as a stepper: it follows a step from event to event, exactly.
 
@@ -51,7 +71,7 @@ class PathStepper:
         self._statistics = statistics
         self._strict = strict
         self._memory = TableauMemory(system)
-        self._step: PathStep | DriftPath | None = None
+        self._step: Path | None = None
         self._systems: dict[tuple[float, bytes], System] = {}
         self._begin = 0.0  # fraction of the history's step at which `_step` starts
         self._releases = self._jumps = 0
@@ -91,6 +111,8 @@ class PathStepper:
                 if is_steady:
                     self._step = PathStep(system, now, after, self._memory)
                 else:
+                    from fastpin.drift import DriftPath
+
                     self._step = DriftPath(system, now, after, later.friction)
             begin, length = self._begin, piece.end - self._begin
             part = 1.0 if stop == piece.end else (stop - begin) / length
@@ -117,7 +139,7 @@ class PathStepper:
         self._statistics["resettled"] += self._step.resettled
         self._step = None
 
-    def _count(self, position: Position, followed: WholeStep | PathStep | DriftPath) -> None:
+    def _count(self, position: Position, followed: WholeStep | Path) -> None:
         """Note the nodes and the events of a step that was followed."""
         position.touched |= followed.touched
         self._statistics["events"] += followed.events

@@ -35,6 +35,9 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.errors import ArcError, ConvergenceError, SolveError
 from fastpin.solver.first_contact import first_contact
+from fastpin.solver.increment_stepper import IncrementStepper
+from fastpin.solver.outside import OutsideGap
+from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.repeats import CornerEntry, CornerLog, CycleEnd, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import follow_floating, release
 from fastpin.solver.result import Restart
@@ -42,6 +45,7 @@ from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
 from fastpin.solver.step import (
     Piece,
     Position,
+    Stepper,
     check_bond,
     check_resolution,
     check_turning,
@@ -50,7 +54,6 @@ from fastpin.solver.step import (
     pieces,
     presses,
 )
-from fastpin.solver.window import OutsideGap, stepper_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 
@@ -524,3 +527,15 @@ class Run:
             dissipation=(dissipated[0] + dissipated[1]) * scales.energy, problem=each.problem, grid=each.grid,
             marks=marks, seat=seat,
         )  # fmt: skip
+
+
+def stepper_of(system: System, options: SolveOptions, statistics: dict[str, float], strict: bool) -> Stepper:
+    """The solver of the method that the options name."""
+    if options.method == "increment":
+        assert options.increments is not None
+        return IncrementStepper(system, options.increments, statistics)
+    if system.needs_windows:
+        from fastpin.narrow import WindowStepper
+
+        return WindowStepper(system, statistics, strict)
+    return PathStepper(system, statistics, strict)

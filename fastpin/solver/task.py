@@ -25,7 +25,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from fastpin.elasticity.large import build_system
+from fastpin.elasticity.build import build_system
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.acting import check_arc, check_keep, check_loads
@@ -37,7 +37,7 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.runtime.threads import STOPPING
-from fastpin.solver.arc import candidate_grids, narrow_grids
+from fastpin.solver.arc import candidate_grids
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Recorder, Run, RunProgress
@@ -186,6 +186,8 @@ class Task:
         """Graded grids for narrow contacts. If an earlier run has ended on one of them, the grids after it."""
         if self.grid is not None or self.options.arc is not None or self.problem.seat is not None:
             return ()
+        from fastpin.narrow import narrow_grids
+
         grids = narrow_grids(self.problem, self.history.distinct(), self.force, self.options, progress)
         if unfit is None:
             return grids

@@ -16,6 +16,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from fastpin.drift.friction import follow_friction, followed_problem, system_with_friction
 from fastpin.model.checks import MOST_PARAMETER
 from fastpin.model.loads import complete_load
 from fastpin.model.problem import MOST_GAP
@@ -23,7 +24,6 @@ from fastpin.model.profile import Profile
 from fastpin.model.wear import Wear
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import SolveError
-from fastpin.solver.followed import follow_friction, followed_problem, system_with_friction
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED
 from fastpin.states.state import State

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from fastpin.elasticity.large import build_system
+from fastpin.elasticity.build import build_system
 from fastpin.errors import InputError
 from fastpin.model.case import check_wear
 from fastpin.model.checks import number_array

@@ -8,8 +8,8 @@ import pytest
 from fastpin import Grid, Material, MaterialPair, Problem
 from fastpin.bodies import Tube
 from fastpin.elasticity import operator
-from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
+from fastpin.narrow.large import LargeSystem
 from tests.support.laminates import RIGID, STEEL, TURNED, orthotropic
 from tests.support.tiers import gate
 

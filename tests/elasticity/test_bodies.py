@@ -9,11 +9,11 @@ from scipy.integrate import quad
 
 from fastpin import Grid, Problem
 from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
-from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.elasticity.terms import body_terms
 from fastpin.model.angles import BOTTOM
 from fastpin.model.loads import LOADS, REMOTE, SXX, SXY, SYY, P, Q
+from fastpin.narrow.large import LargeSystem
 from tests.support import walls
 from tests.support.bodies import JOINTS, UNLIKE, joint_problem
 from tests.support.checks.body_cases import ring_compliance

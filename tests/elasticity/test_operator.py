@@ -7,11 +7,11 @@ import pytest
 
 from fastpin import Grid, Problem, solve
 from fastpin.bodies import Ring, Tube
-from fastpin.elasticity import large, operator
-from fastpin.elasticity.large import LargeSystem
+from fastpin.elasticity import build, operator
 from fastpin.elasticity.operator import DenseOperator, ToeplitzOperator
 from fastpin.elasticity.system import System
 from fastpin.kernels import toeplitz
+from fastpin.narrow.large import LargeSystem
 from fastpin.solver import path, tableau
 from tests.support.checks.body_cases import ring_compliance
 from tests.support.kernels import python
@@ -85,7 +85,7 @@ def test_entries_of_an_operator_that_only_has_products(titanium_in_aluminium):
 def _transforms(monkeypatch):
     """Small grids too are followed in the way of large ones."""
     as_with_many_nodes(monkeypatch)
-    monkeypatch.setattr(large, "MOST_KEPT", 0)
+    monkeypatch.setattr(build, "MOST_KEPT", 0)
     monkeypatch.setattr(tableau, "WORTHWHILE", 1)
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fastpin import Grid, Material, Problem, solve
-from fastpin.elasticity import large
-from fastpin.elasticity.large import build_system
+from fastpin.elasticity import build
+from fastpin.elasticity.build import build_system
 from fastpin.elasticity.system import System
 from tests.support.bodies import HOLDS
 from tests.support.programs import assert_same_bits
@@ -19,7 +19,7 @@ GRID = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 61)
 @pytest.fixture
 def kept(monkeypatch):
     """No system is kept before a test."""
-    monkeypatch.setattr(large, "_KEPT", [])
+    monkeypatch.setattr(build, "_KEPT", [])
 
 
 def problem_of(pair, case="plain", **changes):
@@ -65,7 +65,7 @@ def test_results_have_the_same_bits_with_shared_matrices(titanium_in_aluminium):
     problems = [problem_of(titanium_in_aluminium, friction=friction) for friction in (0.3, 0.31, 0.32, 0.9)]
     shared = [solve(problem, history, nodes=61) for problem in problems]
     for problem, result in zip(problems, shared, strict=True):
-        large._KEPT.clear()
+        build._KEPT.clear()
         alone = solve(problem, history, nodes=61)
         assert np.array_equal(result.grid.theta, alone.grid.theta)
         assert_same_bits(result, alone)

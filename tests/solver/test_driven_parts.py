@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from fastpin import Grid, Problem, solve
-from fastpin.elasticity import large
-from fastpin.elasticity.large import LargeSystem, build_system
+from fastpin.elasticity import build
+from fastpin.elasticity.build import build_system
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model import LOADS
+from fastpin.narrow.large import LargeSystem
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import worst_residual
 from fastpin.solver.errors import ResolutionError
@@ -92,7 +93,7 @@ def circling(reach, *degrees):
 
 @pytest.mark.parametrize("drive", DRIVES)
 def test_a_large_system_has_the_dense_displacements(titanium_in_aluminium, drive, monkeypatch):
-    monkeypatch.setattr(large, "MOST_DENSE", 50)
+    monkeypatch.setattr(build, "MOST_DENSE", 50)
     case, grid = narrow(titanium_in_aluminium, drive), Grid.graded([(BOTTOM, 0.1)], 90, BOTTOM)
     system, dense = build_system(case, grid, 1.0), System.build(case, grid, 1.0)
     assert isinstance(system, LargeSystem)
@@ -112,14 +113,14 @@ def test_windows_give_the_states_of_the_whole_operator(titanium_in_aluminium, dr
         "both": [{"uy": -0.303}, {"ux": 0.003}, {"ux": -0.002}, {"uy": -0.2}, {"uy": -0.301}],
     }[drive]
     whole = solve(case, history, grid=grid)
-    seen, open_window = [], LargeSystem.window
+    seen, open_window = [], LargeSystem.part
 
     def counted(system, nodes):
         seen.append(nodes.size)
         return open_window(system, nodes)
 
-    monkeypatch.setattr(large, "MOST_DENSE", 50)
-    monkeypatch.setattr(LargeSystem, "window", counted)
+    monkeypatch.setattr(build, "MOST_DENSE", 50)
+    monkeypatch.setattr(LargeSystem, "part", counted)
     windows = solve(case, history, grid=grid)
     assert min(seen) < 200
     assert difference(whole, windows) < 1e-9

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from fastpin.elasticity.build import build_system
 from fastpin.elasticity.interfaces import SEAT
-from fastpin.elasticity.large import build_system
 from fastpin.model.grid import Grid
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.interfaces import PinView

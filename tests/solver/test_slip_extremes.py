@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fastpin import Grid, State, solve
-from fastpin.elasticity import large
+from fastpin.elasticity import build
 from fastpin.kernels.status import OPEN
 from tests.support.programs import EXTREMES, RANDOM, SLIP, P, q
 from tests.support.slip_cases import CASES, LIKE, UNLIKE, assert_contains, solved, unitless
@@ -173,7 +173,7 @@ def test_windows_give_the_sums_and_extremes_of_the_whole_grid(monkeypatch: pytes
     history = [*sheared, {"P": 0.02, "Q": 0.01}, {"P": 0.0, "Q": 0.0}, {"P": 1.0}]
     grid = Grid.graded([(-0.5 * np.pi, 0.3), (-1.0, 0.3), (-2.1, 0.3)], 260, -0.5 * np.pi)
     whole = solve(problem, history, grid=grid, slip_sums=True)
-    monkeypatch.setattr(large, "MOST_DENSE", 100)
+    monkeypatch.setattr(build, "MOST_DENSE", 100)
     on_windows = list(solve(problem, history, grid=grid, slip_sums=True, between=2))
     assert_contains(on_windows)
     for place, expected in enumerate(whole):

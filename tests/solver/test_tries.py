@@ -4,7 +4,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import fastpin
-from fastpin import ConvergenceError, Grid, SolveError, SolveOptions
+from fastpin import ConvergenceError, Grid, SolveError, SolveOptions, narrow
 from fastpin.solver import ArcError, task
 from fastpin.solver.task import Task, Unfit, follow_on_arcs, one_blas_thread
 
@@ -19,7 +19,7 @@ NAMES = {id(grid): name for grid, name in zip([*ARCS, *GRADED], ["arc", "wide", 
 @pytest.fixture(autouse=True)
 def _known_grids(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(task, "candidate_grids", lambda *_: iter(ARCS))
-    monkeypatch.setattr(task, "narrow_grids", lambda *_: iter(GRADED))
+    monkeypatch.setattr(narrow, "narrow_grids", lambda *_: iter(GRADED))
 
 
 def order(errors: dict[str, type[SolveError]], grid: Grid | None = None, unfit: Unfit | None = None, **options) -> str:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fastpin import Grid, LoadHistory, Problem, SolveOptions, solve
-from fastpin.elasticity.large import latest_system
+from fastpin.elasticity.build import latest_system
 from fastpin.kernels import exchange
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver import arc, held

@@ -40,6 +40,7 @@ LEVELS = (
     ("reading",),
     ("states",),
     ("solver", "damage", "cracks"),
+    ("narrow", "drift"),
     ("sessions", "wear_lives"),
     ("verification", "storage", "joints"),
     ("assess",),
@@ -57,8 +58,8 @@ RANKS = {folder: rank for rank, level in enumerate(LEVELS) for folder in level i
 CORE = ("runtime", "kernels", "model", "bodies", "elasticity", "reading", "states", "solver")
 """The folders that a solution needs."""
 
-WINGS = ("lugs", "tables")
-"""Folders of lower rank that few solutions need. The core does not import them."""
+WINGS = ("lugs", "tables", "narrow", "drift")
+"""Folders that few solutions need. The core imports no file of theirs."""
 
 ROOT_FILES = ("errors", "moved", "version")
 """Files of rank 0, beside the folders."""
@@ -101,12 +102,17 @@ MOST_PUBLIC_NAMES = 44
 
 UPWARD = {
     "bodies/compliance.py": "the stress away from the hole takes integrals, which few plates need",
+    "elasticity/build.py": "an operator without stored entries is for grids of many unequal distances",
     "model/history.py": "LoadHistory is read from a CSV file, which few histories are",
     "model/profile.py": "Profile is read from a CSV file, which few profiles are",
     "states/state.py": "State shows itself in notebooks",
     "wear_lives/wear_result.py": "WearResult words itself as a table",
     "solver/__init__.py": "names that have moved to a wing stay here for a version",
+    "solver/first_contact.py": "few first contacts are found on a window",
+    "solver/path_stepper.py": "the friction changes along few steps",
     "solver/result.py": "Result plots, reports, saves and shows itself, and has its fatigue computed",
+    "solver/run.py": "few grids are followed on windows",
+    "solver/task.py": "few contacts are too narrow for equally spaced nodes",
 }
 """Files that call public faces, of fastpin or of other folders, inside functions, and why."""
 

@@ -9,8 +9,8 @@ import pytest
 
 import fastpin
 from fastpin import Grid, InputError, NoEquilibriumError
+from fastpin.drift.friction import follow_friction, followed_problem
 from fastpin.model.profile import profile_of_nodes
-from fastpin.solver.followed import follow_friction, followed_problem
 from fastpin.wear_lives import WearResult, WornCycle
 from tests.support.refusals import refused
 from tests.support.tiers import gate

@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 
 from fastpin import InputError, LoadHistory, Material, MaterialPair, Problem, SolveOptions, load, record, resume, solve
-from fastpin.elasticity import large
-from fastpin.elasticity.large import LargeSystem, build_system
+from fastpin.elasticity import build
+from fastpin.elasticity.build import build_system
 from fastpin.elasticity.system import System
 from fastpin.model import LOADS
 from fastpin.model.grid import Grid, graded_size
-from fastpin.solver import arc, window
-from fastpin.solver import survey as surveys
-from fastpin.solver.arc import narrow_grids
+from fastpin.narrow import survey as surveys
+from fastpin.narrow import window
+from fastpin.narrow.large import LargeSystem
+from fastpin.narrow.survey import narrow_grids, survey
+from fastpin.narrow.window import Window
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.errors import NoEquilibriumError, ResolutionError
 from fastpin.solver.first_contact import first_contact
-from fastpin.solver.survey import survey
 from fastpin.solver.task import Task
-from fastpin.solver.window import Window
 from tests.support.tiers import gate
 from tests.survey.histories import generate
 
@@ -135,7 +135,7 @@ def test_narrow_contacts_are_solved_with_few_nodes(corners, nodes):
     assert not result.grid.uniform
     for state in result:
         assert worst(state) < 1e-10
-        assert np.count_nonzero(state.pressure) >= 0.6 * arc.LEAST_ACROSS[0]
+        assert np.count_nonzero(state.pressure) >= 0.6 * surveys.LEAST_ACROSS[0]
     fine = solve(case, corners, grid=result.grid.with_nodes(2 * result.grid.size))
     for one, two in zip(result, fine, strict=True):
         assert one.peak_pressure == pytest.approx(two.peak_pressure, rel=0.02)
@@ -160,7 +160,7 @@ def test_a_contact_lost_on_the_first_graded_grid_is_followed_on_a_second(monkeyp
 
 @pytest.mark.gate
 def test_too_many_nodes_are_refused_with_the_first_error(monkeypatch):
-    monkeypatch.setattr(arc, "MOST_GRADED", 70)
+    monkeypatch.setattr(surveys, "MOST_GRADED", 70)
     with pytest.raises(ResolutionError, match="narrower than the nodes"):
         solve(problem(200.0), SMALL_FIRST, nodes=61)
 
@@ -203,8 +203,8 @@ def test_columns_on_demand_are_the_operator():
     assert lazy.elastic(tractions) == pytest.approx(dense.elastic(tractions), abs=1e-13)
     assert np.array_equal(lazy.elastic(np.zeros(300)), np.zeros(300))
     nodes = np.r_[140:150, 0:30]
-    assert lazy.window(nodes).grid.theta[0] == grid.theta[140]
-    inner = np.asarray(lazy.window(nodes).operator)[1:39, 1:39]
+    assert lazy.part(nodes).grid.theta[0] == grid.theta[140]
+    inner = np.asarray(lazy.part(nodes).operator)[1:39, 1:39]
     whole = dense.operator.entries(nodes[1:39], nodes[1:39])
     assert inner == pytest.approx(whole, abs=1e-13)
 
@@ -222,7 +222,7 @@ def test_windows_lead_to_the_states_of_the_whole_grid(monkeypatch, pin_load):
     case = problem(20.0, 0.4, pin_load, "fixed" if pin_load == "centre" else "free")
     grid = Grid.graded([(BOTTOM + angle, 0.06) for angle in np.linspace(-0.8, 0.8, 27)], 500, BOTTOM)
     on_windows = solve(case, TRAVELLING, grid=grid, between=1)
-    monkeypatch.setattr(large, "MOST_DENSE", 1000)
+    monkeypatch.setattr(build, "MOST_DENSE", 1000)
     whole = solve(case, TRAVELLING, grid=grid, between=1)
     for one, two in zip(on_windows, whole, strict=True):
         peak, length = two.pressure.max(), np.abs(two.slip).max()
@@ -254,7 +254,7 @@ def test_a_first_contact_in_a_window_takes_the_part_of_the_whole_grid():
     load = np.array([{"P": 1e-3, "syy": 3.0}.get(name, 0.0) for name in LOADS])
     (small, part), (whole, expected) = (
         first_contact(system, unloaded_configuration(system), 0.0 * load, load, strict=True)
-        for system in (build.build(case, grid, 1.0) for build in (LargeSystem, System))
+        for system in (kind.build(case, grid, 1.0) for kind in (LargeSystem, System))
     )
     assert expected < 1.0
     assert part == expected
@@ -263,12 +263,12 @@ def test_a_first_contact_in_a_window_takes_the_part_of_the_whole_grid():
 
 def test_a_second_place_opens_a_wider_window(monkeypatch):
     """Compression across the load presses the pin at two places, which no window round the first place holds."""
-    monkeypatch.setattr(large, "MOST_DENSE", 100)
+    monkeypatch.setattr(build, "MOST_DENSE", 100)
     case = problem(1.0, 0.3)
     corners = [{"P": 1.0}, {"P": 0.2, "sxx": 3.0, "syy": -6.0}]
     grid = Grid.graded([(BOTTOM, 0.2), (-BOTTOM, 0.2)], 240, BOTTOM)
     on_windows = solve(case, corners, grid=grid)
-    monkeypatch.setattr(large, "MOST_DENSE", 1000)
+    monkeypatch.setattr(build, "MOST_DENSE", 1000)
     whole = solve(case, corners, grid=grid)
     assert len(whole[-1].contact) == 2
     assert np.abs(on_windows[-1].pressure - whole[-1].pressure).max() < 1e-8 * whole[-1].pressure.max()

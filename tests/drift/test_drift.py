@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fastpin.casefile.reader import parse_case
+from fastpin.drift.path import DriftPath, Moment, _dip
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.kernels import exchange
@@ -22,7 +23,6 @@ from fastpin.model.problem import Problem
 from fastpin.report.summary import printed_loads
 from fastpin.sessions.session import Session
 from fastpin.solver.configuration import Configuration, worst_residual
-from fastpin.solver.drift import DriftPath, Moment, _dip
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
@@ -287,7 +287,7 @@ def test_energies_between_far_events_are_exact() -> None:
 def test_a_stretch_is_halved_until_cubics_describe_it(monkeypatch: pytest.MonkeyPatch) -> None:
     counts = []
     for most in (1e-3, 1e-9):
-        monkeypatch.setattr("fastpin.solver.drift.MOST_BEND", most)
+        monkeypatch.setattr("fastpin.drift.path.MOST_BEND", most)
         path = last_path()
         path.follow(1.0)
         counts.append(path.rebuilds)

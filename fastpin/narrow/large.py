@@ -2,29 +2,15 @@
 
 from __future__ import annotations
 
-import threading
-
 import numpy as np
 
 from fastpin.elasticity.drive import Drive
-from fastpin.elasticity.interfaces import JointSystem, seat_grid
 from fastpin.elasticity.operator import AnisotropicTerm, Operator, uniform_part
 from fastpin.elasticity.system import System
 from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels import fourier, influence
 from fastpin.model.grid import Grid, arc_of
 from fastpin.model.problem import Problem
-
-MOST_DENSE = 400
-"""Nodes of unequal spacing, at most, for which the whole operator is filled."""
-
-MOST_KEPT = 512
-"""Most nodes of a system that is kept. It takes 8 MB."""
-
-_KEPT: list[System] = []
-"""The latest systems with few nodes. A history that goes on in pieces asks for the same one again and again."""
-
-_LOCK = threading.Lock()
 
 
 class ColumnsOperator(Operator):
@@ -70,7 +56,9 @@ class ColumnsOperator(Operator):
 class LargeSystem(System):
     """A system whose operator has no stored entries. Solvers work on a window of neighbouring nodes."""
 
-    def window(self, nodes: np.ndarray) -> System:
+    needs_windows = True
+
+    def part(self, nodes: np.ndarray) -> System:
         """The system of neighbouring `nodes`, shape (k,), in their order round the hole. Its end nodes stay open."""
         built = System.build(self.problem, arc_of(self.grid, nodes), self.scales.force)
         return built.with_friction(self.friction[nodes])
@@ -78,39 +66,3 @@ class LargeSystem(System):
     @staticmethod
     def _operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> Operator:
         return ColumnsOperator(problem, grid, bodies, drive)
-
-
-def build_system(problem: Problem, grid: Grid, force: float) -> System:
-    """The system of `problem` on `grid` with reference force `force`, N/m; a :class:`LargeSystem` where that is due.
-
-    Where a bush slips, `grid` has the nodes of the pin, and as many go round the seat. Other systems with few nodes
-    are those of :func:`latest_system`.
-    """
-    if problem.seat is not None:
-        return JointSystem.join(problem, (grid, seat_grid(problem, grid)), force)
-    if grid.closed and not grid.uniform and grid.size > MOST_DENSE:
-        return LargeSystem.build(problem, grid, force)
-    return latest_system(problem, grid, force)
-
-
-def latest_system(problem: Problem, grid: Grid, force: float) -> System:
-    """The system of the pin, with a bush that sticks.
-
-    The latest systems with few nodes are kept, and returned again for the same problem and grid. Problems that differ
-    in friction and fit only share their matrices, as many runs of a sweep do.
-    """
-    if grid.size > MOST_KEPT:
-        return System.build(problem, grid, force)
-    with _LOCK:
-        alike = [
-            known for known in _KEPT
-            if known.scales.force == force and known.grid.closed == grid.closed
-            and np.array_equal(known.grid.theta, grid.theta)
-        ]  # fmt: skip
-    system = next((known for known in alike if known.problem == problem), None)
-    if system is None:
-        changed = (known.changed(problem) for known in alike)
-        system = next(filter(None, changed), None) or System.build(problem, grid, force)
-    with _LOCK:  # four: of a history, of its coarse run, and the same two for its error bars or the run before
-        _KEPT[:] = [system, *(known for known in _KEPT if known is not system)][:4]
-    return system

@@ -7,12 +7,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from fastpin.elasticity.large import LargeSystem
+from fastpin.drift.path import DriftingSystem
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.loads import named_load
 from fastpin.model.problem import Problem
-from fastpin.solver.drift import DriftingSystem
 from fastpin.solver.errors import SolveError
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.repeats import Repeats
@@ -51,11 +50,11 @@ def follow_friction(run: AnyRun, problem: Problem) -> AnyRun:
     Raises
     ------
     InputError
-        If the system of the run is a :class:`LargeSystem`.
+        If the system of the run needs windows.
     SolveError
         See :meth:`Run.follow`. The fraction is that of the change.
     """
-    if isinstance(run.system, LargeSystem):
+    if run.system.needs_windows:
         raise InputError("friction", "a change can't be followed on a circle of so many unequal node distances")
     before, load = run.last_corner, run.last_corner.load
     system = system_with_friction(run.system, problem)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -25,6 +25,7 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.reading.marks import Marks
 from fastpin.reading.zones import runs
+from fastpin.solver.arc import first_direction, outermost_corners
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.driven import rest_on_hole
@@ -43,6 +44,12 @@ log = logging.getLogger(__name__)
 GapPlace = tuple[float, float]
 """Angle of the middle and width of a contact, rad."""
 
+LEAST_ACROSS = (10, 20)
+"""Nodes across the narrowest contact of a graded grid, at least; more where a contact gets lost on the first grid."""
+
+MOST_GRADED = 20_000
+"""Nodes of a graded grid, at most, unless the user asks for more."""
+
 ACROSS = 24
 """Nodes across the contact on a grid of the survey."""
 
@@ -51,6 +58,52 @@ LARGEST_PART = 0.25
 
 MOST_JUMPS = 30
 """Snaps of the pin in one history, at most."""
+
+
+def narrow_grids(
+    problem: Problem, values: np.ndarray, force: float, options: SolveOptions, progress: RunProgress | None = None
+) -> Iterator[Grid]:
+    """Yield graded grids with at least :data:`LEAST_ACROSS` nodes on every contact of a history.
+
+    A wide contact has no fewer nodes than on an arc of equally spaced ones.
+
+    Parameters
+    ----------
+    problem, values, force, progress
+        See :func:`fastpin.solver.arc.candidate_grids`.
+    options : SolveOptions
+        A grid has more nodes than its ``nodes`` where so many are needed, up to :data:`MOST_GRADED`. There is none if
+        the history could not be surveyed.
+    """
+    first_part = float(options.fractions[0]) if options.keep_rule.inside else 1.0
+    places = survey(problem, outermost_corners(problem, values), force, first_part, progress)
+    if not places:
+        return
+    distinct: list[tuple[float, float]] = []  # without each place that lies on a narrower place
+    for angle, width in sorted(places, key=lambda place: place[1]):
+        if not any(abs(float(angle_between(angle, other))) < 0.25 * narrower for other, narrower in distinct):
+            distinct.append((angle, width))
+    start, length = _reach(places)
+    for across in LEAST_ACROSS:
+        width = across * length / options.nodes  # as dense everywhere as equally spaced nodes
+        between = [(float(angle), width) for angle in start + np.arange(0.0, length + 0.5 * width, 0.5 * width)]
+        needed = graded_size(distinct + between, across)
+        if needed > max(MOST_GRADED, options.nodes):
+            log.info("the narrow contacts of this history take %d nodes: too many", needed)
+            return
+        yield Grid.graded(distinct + between, max(options.nodes, needed), first_direction(problem, values))
+
+
+def _reach(places: list[tuple[float, float]]) -> tuple[float, float]:
+    """Start and length of the shortest arc, rad, that holds all places."""
+    starts = np.array([(angle - 0.5 * width) % (2.0 * math.pi) for angle, width in places])
+    order = np.argsort(starts)
+    starts, widths = starts[order], np.array([width for _, width in places])[order]
+    reached = np.maximum.accumulate(starts + widths)
+    reached = np.maximum(reached, reached[-1] - 2.0 * math.pi)  # the last places may go on beyond the first
+    gaps = np.r_[starts[1:], starts[0] + 2.0 * math.pi] - reached
+    widest = int(np.argmax(gaps))
+    return float(starts[(widest + 1) % starts.size]), 2.0 * math.pi - max(float(gaps[widest]), 0.0)
 
 
 def survey(

@@ -2,29 +2,21 @@
 
 On a grid with thousands of nodes a narrow contact needs few of them at a time. Nodes outside the window stay open. A
 contact that reaches an end of the window continues on another window. All nodes keep their hats, so nothing is
-interpolated. :class:`OutsideGap` watches the gap beyond an arc of nodes in the same way.
+interpolated.
 """
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
 
 import numpy as np
 
-from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
-from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
-from fastpin.model.grid import LEAST_NODES, Grid
-from fastpin.model.loads import REMOTE
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.solver.configuration import SLIGHT, Configuration, embedded
-from fastpin.solver.errors import ArcError, ResolutionError
-from fastpin.solver.increment_stepper import IncrementStepper
-from fastpin.solver.interfaces import part_of
+from fastpin.solver.errors import NARROW, ArcError, ResolutionError
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.rest import release
-from fastpin.solver.step import Piece, Position, Stepper, StepReport
+from fastpin.solver.step import Piece, Position, StepReport
 
 MARGIN = 48
 """Open nodes of a window on either side of the contact, at least; more for a contact of more nodes."""
@@ -43,7 +35,8 @@ class Window:
 
     Parameters
     ----------
-    system : LargeSystem
+    system : System
+        One that needs windows.
     closed : ndarray of bool, shape (n,)
         Nodes in contact, or about to be.
 
@@ -55,7 +48,7 @@ class Window:
         Their system.
     """
 
-    def __init__(self, system: LargeSystem, closed: np.ndarray) -> None:
+    def __init__(self, system: System, closed: np.ndarray) -> None:
         n = system.grid.size
         inside = np.flatnonzero(closed)
         spaces = np.diff(np.r_[inside, inside[0] + n])
@@ -64,7 +57,7 @@ class Window:
         margin = min(max(MARGIN, count), (n - count) // 2)
         self.nodes = np.arange(first - margin, first + count + margin) % n
         self._large = system
-        self.system = system.window(self.nodes)
+        self.system = system.part(self.nodes)
 
     def paste(self, inside: Configuration, before: Configuration) -> Configuration:
         """The configuration of all nodes with the part `inside` the window. `before` has the rest of the other nodes.
@@ -90,12 +83,13 @@ class WindowStepper:
 
     Parameters
     ----------
-    system : LargeSystem
+    system : System
+        One that needs windows.
     statistics, strict
         See :class:`fastpin.solver.path_stepper.PathStepper`.
     """
 
-    def __init__(self, system: LargeSystem, statistics: dict[str, float], strict: bool) -> None:
+    def __init__(self, system: System, statistics: dict[str, float], strict: bool) -> None:
         self._system = system
         self._statistics = statistics
         self._strict = strict
@@ -175,88 +169,29 @@ class WindowStepper:
         position.reached, position.fresh = self._inside.reached, self._inside.fresh
 
 
-def stepper_of(system: System, options: SolveOptions, statistics: dict[str, float], strict: bool) -> Stepper:
-    """The solver of the method that the options name."""
-    if options.method == "increment":
-        assert options.increments is not None
-        return IncrementStepper(system, options.increments, statistics)
-    if isinstance(system, LargeSystem):
-        return WindowStepper(system, statistics, strict)
-    return PathStepper(system, statistics, strict)
+def begun_in_window(
+    system: System,
+    resting: Configuration,
+    patch_on: Callable[[System, Configuration], tuple[Configuration, float]],
+) -> tuple[Configuration, float]:
+    """The first contact from rest and its fraction of the step, found on a window.
 
+    ``patch_on(system, resting)`` finds the first contact on the system of a window.
 
-class OutsideGap:
-    """The gap beyond an arc of nodes, at up to 180 angles: a pin may touch there too.
-
-    Where a bush slips, the tractions in its seat bend its bore.
-
-    Parameters
-    ----------
-    system : System
-        On an arc.
-
-    Attributes
-    ----------
-    of : object
-        The operator of `system`. Systems with this operator have the same gap beyond the arc.
+    Raises
+    ------
+    ResolutionError
+        If the pin touches outside of every window.
     """
-
-    def __init__(self, system: System) -> None:
-        self.of: object = system.operator
-        self._joint = system if isinstance(system, JointSystem) else None
-        system = self._own(system)
-        grid = system.grid
-        n, ends = grid.size, (grid.theta[-1], grid.theta[0] + 2.0 * math.pi)
-        count = min(math.ceil((ends[1] - ends[0]) / node_spacing(grid)) - 1, 180)
-        self._theta = np.linspace(*ends, max(count, LEAST_NODES) + 2)[1:-1]
-        around = System.build(system.problem, Grid(np.r_[grid.theta, self._theta], closed=True), system.scales.force)
-        rows, nodes = np.arange(n, around.grid.size), np.arange(n)
-        self._operator = around.operator.entries(rows, np.r_[nodes, around.grid.size + nodes])
-        self._moved, self._loads = around.motion[rows], around.loads[rows].copy()
-        self._rest: tuple[np.ndarray, Problem, np.ndarray] | None = None  # the latest gap at rest
-        if self._joint is not None:  # the remote stress acts on the lug alone
-            self._loads[:, REMOTE] = 0.0
-            self._bore = self._joint.bore_at(self._theta)
-
-    @staticmethod
-    def _own(system: System) -> System:
-        """The system of the pin."""
-        return system.alone[PIN] if isinstance(system, JointSystem) else system
-
-    def is_closed(self, system: System, now: Configuration) -> bool:
-        """Whether the pin, in contact on the arc, penetrates the hole beyond it by more than rounding."""
-        bent: float | np.ndarray = 0.0
-        if self._joint is not None:
-            bent = self._bore @ now.tractions[self._joint.nodes.rows(SEAT)]
-            system, now = self._own(system), part_of(self._joint, now, PIN)
-        if not now.closed.any():  # a floating pin is looked after by the first contact
-            return False
-        elastic = self._operator @ now.tractions + bent
-        moved = self._moved @ now.motion + self._loads @ now.load[: self._loads.shape[1]]
-        known = self._rest
-        if known is None or known[0] is not now.rest_gap or known[1] is not system.problem:
-            known = self._rest = now.rest_gap, system.problem, rest_gap_at(system, now, self._theta)
-        lowest = float((elastic + moved + known[2]).min())
-        return lowest < 0.0 and lowest < -SLIGHT * float(max(np.abs(elastic).max(), np.abs(moved).max()))
-
-
-def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.ndarray:
-    """The gap of the resting pin, shape (k,), at angles `theta` (k,) beyond the nodes of an arc.
-
-    It differs from the gap at the end of the arc by the first harmonic of the resting position, and by the initial gap.
-    The sines keep the digits of small gaps in a large clearance.
-    """
-    ends = system.grid.theta[[0, -1]]
-    nearest = np.argmin(np.abs(theta[:, None] - ends), axis=1)
-    end = ends[nearest]
-    x, y = np.where(system.drive.axes, 0.0, now.rest)
-    middle, half = 0.5 * (theta + end), 0.5 * (theta - end)
-    change: np.ndarray = 2.0 * np.sin(half) * (x * np.sin(middle) - y * np.cos(middle))
-    if system.problem.gap:
-        change += (system.problem.gap_at(theta)[0] - system.problem.gap_at(end)[0]) / system.scales.displacement
-    return now.rest_gap[[0, -1]][nearest] + change
-
-
-def node_spacing(grid: Grid) -> float:
-    """Distance of neighbouring nodes of a uniform arc, rad."""
-    return float(grid.theta[-1] - grid.theta[0]) / (grid.size - 1)
+    nodes = resting.closed
+    for _ in range(10):  # the pin may also touch outside of a window
+        window = Window(system, nodes)
+        try:
+            patch, part = patch_on(window.system, resting.part(window.nodes))
+            return window.paste(patch, resting), part
+        except SecondPlaceError as second:
+            nodes = nodes | second.nodes
+        except ArcError:
+            nodes = nodes.copy()
+            nodes[window.nodes] = True
+    raise ResolutionError(NARROW)

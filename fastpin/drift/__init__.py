@@ -1,0 +1,8 @@
+"""Paths along which the friction changes. Imported when it does.
+
+The public names stand in ``__init__.pyi``. They are loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,2 @@
+from .friction import follow_friction as follow_friction
+from .path import DriftPath as DriftPath

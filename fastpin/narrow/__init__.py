@@ -1,0 +1,8 @@
+"""Contacts that are narrow in their arc: graded grids and windows of nodes. Imported when a contact needs them.
+
+The public names stand in ``__init__.pyi``. They are loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
