@@ -31,6 +31,9 @@ NOUNS = ("gauge_radius", "slip_sums", "Ring", "fatigue", "crack", "wear", "stren
 CORE = ("runtime", "kernels", "model", "bodies", "elasticity", "reading", "states", "solver")
 """The folders that a solution needs. All other files of the package are the outer ones."""
 
+WINGS = ("lugs", "tables", "narrow", "drift")
+"""Folders that few solutions need. A plain solution imports none of their files."""
+
 BODIES = {"Disk", "Tube", "Plate", "Ring", "Bushing", "Compliance", "PinBody", "PlateBody"}
 """Classes of bodies."""
 
@@ -85,7 +88,10 @@ def counted_init(self, *arguments, **keywords):
 
 h5py.File.__init__ = counted_init
 case = fastpin.read_case("case.toml")
+known = set(sys.modules)
 count("solve", lambda: fastpin.solve(case.problem, case.history, nodes=101))
+wings = [name for name in set(sys.modules) - known if name.count(".") == 2 and name.split(".")[1] in WINGS]
+found["files of wings that a solve imports"] = len(wings)
 sys.argv[1:] = []
 sys.stdout = open(os.devnull, "w")
 count("fastpin run", lambda: main(["run", "case.toml", "--nodes", "101"]))
@@ -317,7 +323,7 @@ def entered(checkout: Path, whole: bool = False) -> dict[str, float]:
     """
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "case.toml").write_text((checkout / "fastpin/casefile/example.toml").read_text("utf-8"), "utf-8")
-        command = [_python(checkout), "-c", CALLS.replace("WHOLE", str(whole))]
+        command = [_python(checkout), "-c", CALLS.replace("WHOLE", str(whole)).replace("WINGS", str(WINGS))]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
     counted: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
     return counted

@@ -136,20 +136,15 @@ class Ring(PlateBody):
                 strain = rim.material.expansion * remote[-1]
                 stiff = 0.5 * rim.compliance * (kolosov - 1.0 + 2.0 * far**-2.0)
                 amplitudes.add_uniform(-strain / stiff)
-        else:
-            self._add_rim_stress(rim, remote, amplitudes)
+        else:  # the outer rim carries the tractions of the remote stress
+            total, difference = remote[0] + remote[1], complex(remote[0] - remote[1], 2.0 * remote[2])
+            layer = Layer(np.array([2.0]), far, kolosov, rim.compliance)
+            growing = layer.loaded_outside(np.array([[0.0, 0.5 * np.conj(difference)]]))
+            amplitudes.A[2] += growing[0, 0]
+            amplitudes.C[2] += growing[0, 1]
+            self._free_hole(rim, np.array([2]), growing, amplitudes)
+            amplitudes.add_uniform(0.25 * total / ((1.0 - 1.0 / far) * (1.0 + 1.0 / far)))
         return self._add_half_support(rim, force_on(t), amplitudes) if self.support == "half" else ()
-
-    def _add_rim_stress(self, rim: Rim, remote: Remote, amplitudes: Amplitudes) -> None:
-        """Add the field of a ring whose outer rim carries the tractions of a remote stress."""
-        far = self.far(rim)
-        total, difference = remote[0] + remote[1], complex(remote[0] - remote[1], 2.0 * remote[2])
-        layer = Layer(np.array([2.0]), far, rim.kolosov, rim.compliance)
-        growing = layer.loaded_outside(np.array([[0.0, 0.5 * np.conj(difference)]]))
-        amplitudes.A[2] += growing[0, 0]
-        amplitudes.C[2] += growing[0, 1]
-        self._free_hole(rim, np.array([2]), growing, amplitudes)
-        amplitudes.add_uniform(0.25 * total / ((1.0 - 1.0 / far) * (1.0 + 1.0 / far)))
 
     def _add_half_support(self, rim: Rim, force: complex, amplitudes: Amplitudes) -> tuple[Other, ...]:
         """Add the field of a ring under a half cosine of pressure on its outer rim, beyond the first harmonic.

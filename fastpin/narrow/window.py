@@ -172,11 +172,12 @@ class WindowStepper:
 def begun_in_window(
     system: System,
     resting: Configuration,
-    patch_on: Callable[[System, Configuration], tuple[Configuration, float]],
+    patch_on: Callable[..., tuple[Configuration, float]],
+    most_part: float,
 ) -> tuple[Configuration, float]:
     """The first contact from rest and its fraction of the step, found on a window.
 
-    ``patch_on(system, resting)`` finds the first contact on the system of a window.
+    ``patch_on(system, resting, most_part=most_part)`` finds it on the system of a window.
 
     Raises
     ------
@@ -187,7 +188,7 @@ def begun_in_window(
     for _ in range(10):  # the pin may also touch outside of a window
         window = Window(system, nodes)
         try:
-            patch, part = patch_on(window.system, resting.part(window.nodes))
+            patch, part = patch_on(window.system, resting.part(window.nodes), most_part=most_part)
             return window.paste(patch, resting), part
         except SecondPlaceError as second:
             nodes = nodes | second.nodes

@@ -16,8 +16,8 @@ from fastpin.model.grid import Grid
 from fastpin.model.loads import named_load
 from fastpin.solver.configuration import Configuration, embedded
 from fastpin.solver.errors import ArcError
-from fastpin.solver.outside import OutsideGap, node_spacing, rest_gap_at
 from fastpin.solver.repeats import Repeats
+from fastpin.solver.rest import OutsideGap, node_spacing, rest_gap_at
 from fastpin.solver.result import Restart
 from fastpin.solver.run import Run
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally

@@ -122,24 +122,19 @@ def _uneven(system: System, start: Configuration) -> Configuration | None:
     found = implicit_step(system, start, start.load) or FiniteStep(system, start, everywhere=True).to(start.load)
     is_laminate = system.bodies is not None and system.bodies.anisotropy is not None
     if found is not None and (system.problem.gap or is_laminate):
-        found = _corrected(system, start, found)
+        n = system.grid.size
+        left = system.displacement(found.tractions, found.motion, found.load, found.rest_gap)
+        # One step of iterative refinement.
+        more = solve_statuses(system, found.status, start.slip - left[n:], np.zeros_like(found.load), left[:n])
+        if more is not None:
+            whole = more._replace(
+                pressure=found.pressure + more.pressure, shear=found.shear + more.shear, slip=left[n:] + more.slip,
+                motion=found.motion + more.motion,
+            )  # fmt: skip
+            found = accept_solution(start, whole, found.load)
     if found is None or not found.closed.any() or worst_residual(system, found) > MAX_RESIDUAL:
         return None
     return found
-
-
-def _corrected(system: System, start: Configuration, found: Configuration) -> Configuration:
-    """One step of iterative refinement of the configuration `found` from `start`."""
-    n = system.grid.size
-    left = system.displacement(found.tractions, found.motion, found.load, found.rest_gap)
-    more = solve_statuses(system, found.status, start.slip - left[n:], np.zeros_like(found.load), left[:n])
-    if more is None:
-        return found
-    whole = more._replace(
-        pressure=found.pressure + more.pressure, shear=found.shear + more.shear, slip=left[n:] + more.slip,
-        motion=found.motion + more.motion,
-    )  # fmt: skip
-    return accept_solution(start, whole, found.load)
 
 
 def one_step(

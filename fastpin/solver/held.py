@@ -110,21 +110,17 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     unknowns = DenseUnknowns(system, np.where(closed, STICK, OPEN).astype(np.int8))
     if unknowns.singular:
         return None
-    _fill_by_factorisation(unknowns, table.matrix)
-    return table if _holds(system, closed, table) else None
-
-
-def _fill_by_factorisation(unknowns: DenseUnknowns, matrix: np.ndarray) -> None:
-    """Fill the matrix of a table from factorised equations."""
-    count, others, end = unknowns.count, unknowns.others, unknowns.count + unknowns.others.size
+    matrix, count, others = table.matrix, unknowns.count, unknowns.others
+    end = count + others.size
     acting, balance = unknowns.unit_responses(others, np.zeros(others.size))
-    right = np.eye(unknowns.size, len(matrix))
+    right = np.eye(unknowns.size, size)
     right[count:, :count], right[count:, count:end], right[count:, end:] = 0.0, -balance, np.eye(len(balance))
     right[:count, count:end] = -acting[unknowns.rows]
     found = unknowns.solve(right)
     matrix[:count], matrix[end:] = found[:count], found[count:]
-    matrix[count:end] = unknowns.at_others(found, np.zeros((others.size, len(matrix))))
+    matrix[count:end] = unknowns.at_others(found, np.zeros((others.size, size)))
     matrix[count:end, count:end] += acting[others]
+    return table if _holds(system, closed, table) else None
 
 
 def _fill_in_laminate(system: System, closed: np.ndarray, table: HeldTable) -> bool:

@@ -73,6 +73,7 @@ def accepted(system: System, start: Configuration, after: Configuration | None) 
 def _iterate(
     system: System, start: Configuration, load: np.ndarray, first: np.ndarray, one_at_a_time: bool, iterations: int
 ) -> Configuration | None:
+    """Change the statuses, from the `first` ones on, where the solution breaks a condition, until nothing changes."""
     status = first.astype(np.int8)
     if not (status != OPEN).any():
         return None
@@ -85,7 +86,15 @@ def _iterate(
         solution = solve_statuses(system, status, start.slip, load, start.rest_gap)
         if solution is None:
             return None
-        wanted = _wanted_status(system, start, solution)
+        wanted, tolerance = np.empty_like(status), 1e-11  # parts of the largest pressure or displacement
+        conditions.wanted_status(system.friction, solution, start.slip, start.rest_gap, tolerance, wanted)
+        for nodes in system.turning:
+            if not (wanted[nodes] == STICK).any():
+                slid = solution.slip[nodes] - start.slip[nodes]
+                part = solution._replace(
+                    pressure=solution.pressure[nodes], shear=solution.shear[nodes], status=solution.status[nodes]
+                )
+                _hold_one(wanted[nodes], part, system.friction[nodes], slid)
         changes = wanted != status
         if not changes.any():
             return accept_solution(start, solution, load)
@@ -95,20 +104,6 @@ def _iterate(
         else:
             status = wanted
     return None
-
-
-def _wanted_status(system: System, start: Configuration, solution: ContactValues) -> np.ndarray:
-    """The statuses for the next iteration: the present statuses, changed where the solution breaks a condition."""
-    wanted, tolerance = np.empty_like(solution.status), 1e-11  # parts of the largest pressure or displacement
-    conditions.wanted_status(system.friction, solution, start.slip, start.rest_gap, tolerance, wanted)
-    for nodes in system.turning:
-        if not (wanted[nodes] == STICK).any():
-            slid = solution.slip[nodes] - start.slip[nodes]
-            part = solution._replace(
-                pressure=solution.pressure[nodes], shear=solution.shear[nodes], status=solution.status[nodes]
-            )
-            _hold_one(wanted[nodes], part, system.friction[nodes], slid)
-    return wanted
 
 
 def _hold_one(wanted: np.ndarray, solution: ContactValues, friction: np.ndarray, slid: np.ndarray) -> None:

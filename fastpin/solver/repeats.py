@@ -13,6 +13,7 @@ import math
 from collections import Counter, deque
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -274,11 +275,6 @@ class KnownConfiguration:
     def __post_init__(self) -> None:
         self.load = self.configuration.load.tobytes()
 
-    def copy(self, same_history: bool) -> KnownConfiguration:
-        """A copy that changes independently; it remembers its corners only with `same_history`."""
-        last, period = (self.last, self.period) if same_history else (-1, 0)
-        return KnownConfiguration(self.configuration, self.ends_cycle, last, period, self.since)
-
 
 class Repeats:
     """The remembered configurations, with the latest one at the end."""
@@ -294,7 +290,8 @@ class Repeats:
 
         The copy remembers the corners of the configurations only with `same_history`.
         """
-        return Repeats([known.copy(same_history) for known in self._known])
+        forgotten: dict[str, Any] = {} if same_history else {"last": -1, "period": 0}
+        return Repeats([replace(known, **forgotten) for known in self._known])
 
     def recall(self, now: Configuration, ends_cycle: bool, corner: int) -> KnownConfiguration | None:
         """Return the remembered configuration equal to `now` up to rounding, or remember `now` and return None.

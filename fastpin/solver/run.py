@@ -36,10 +36,9 @@ from fastpin.solver.configuration import (
 from fastpin.solver.errors import ArcError, ConvergenceError, SolveError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment_stepper import IncrementStepper
-from fastpin.solver.outside import OutsideGap
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.repeats import CornerEntry, CornerLog, CycleEnd, KnownConfiguration, Repeats, copied_ends
-from fastpin.solver.rest import follow_floating, release
+from fastpin.solver.rest import OutsideGap, follow_floating, release
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
 from fastpin.solver.step import (
@@ -408,7 +407,7 @@ class Run:
 
         The present configuration has returned every `length` corners since the corner `since`.
         """
-        last = self.corner - 1
+        last, energy = self.corner - 1, self.system.scales.energy
         period = self.corner_log.period(last, length, since, self.keep, self.stops)
         if period is None:
             return
@@ -417,8 +416,18 @@ class Run:
         log.info("corner %d: the last %d corners repeat %d times and are not solved again", last + 1, length, times)
         in_period = [known for known in self.repeats if known.last > last - length]
         for time in range(1, times + 1):
-            entries = self.corner_log.again(logged, counts, time, self.corner)
-            self._book_again(entries, time)
+            entries, rows = self.corner_log.again(logged, counts, time, self.corner), []
+            first = self.slip_tally.repeat([(entry.slip_tally, bool(entry.kept)) for entry in entries], time)
+            for step, entry in enumerate(entries, start=self.corner):
+                for dissipation, work in entry.kept:
+                    rows.append((step, (self.dissipation + dissipation) * energy, (self.work + work) * energy))
+                self.dissipation += entry.dissipation
+                self.work += entry.work
+                self._record_cycles(entry, solved=False)
+            if self.recorder is not None and rows:
+                steps, dissipations, works = zip(*rows, strict=True)
+                slip = SlipFields() if first is None else first.fields(self.system.scales)
+                self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works), slip)
             for known in in_period:
                 known.last += length
             self.corner += length
@@ -426,21 +435,6 @@ class Run:
             if self.corner == len(self.history) and self.recorder is not None and not entries[-1].kept:
                 self._keep(self.corner - 1, 1.0)  # the last state of a history is always kept
             self._show_corner()
-
-    def _book_again(self, entries: list[CornerEntry], time: int) -> None:
-        """Add the energies, states and cycles of the next corners, which are known: repetition `time` of a period."""
-        energy, rows = self.system.scales.energy, []
-        first = self.slip_tally.repeat([(entry.slip_tally, bool(entry.kept)) for entry in entries], time)
-        for step, entry in enumerate(entries, start=self.corner):
-            for dissipation, work in entry.kept:
-                rows.append((step, (self.dissipation + dissipation) * energy, (self.work + work) * energy))
-            self.dissipation += entry.dissipation
-            self.work += entry.work
-            self._record_cycles(entry, solved=False)
-        if self.recorder is not None and rows:
-            steps, dissipations, works = zip(*rows, strict=True)
-            slip = SlipFields() if first is None else first.fields(self.system.scales)
-            self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works), slip)
 
     def _record_cycles(self, entry: CornerEntry, solved: bool = True) -> None:
         if self.recorder is not None:

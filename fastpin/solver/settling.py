@@ -13,7 +13,6 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import complementarity
-from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.solver.configuration import (
     Configuration,
@@ -176,10 +175,23 @@ class FiniteStep:
         if self._unknowns.singular:
             return None
         resting = solve_unknowns(system, self._unknowns, now.slip, load, now.rest_gap)
-        z = lemke(self._matrix, self._complementarity_vector(resting))
+        closed, away = self._closed, self._away
+        (mu, rubbing), (_, rubbing_away) = self._friction(closed), self._friction(away)
+        pressure, gap = resting.pressure[closed], resting.gap[away] / self._length
+        bound, shear = mu * pressure[rubbing], resting.shear[closed[rubbing]]
+        slid = (resting.slip - now.slip)[away[rubbing_away]] / self._length
+        known = np.r_[pressure, bound + shear, bound - shear, gap, slid, np.zeros(slid.size)]
+        z = lemke(self._matrix, known)
         if z is None:
             return None
-        status = self._status(z)
+        status, sizes = self._base.copy(), (closed.size, mu.size, mu.size, away.size, slid.size)
+        positive = z > 1e-12 * float(z.max(initial=0.0))
+        opens, forth, back, pressed, reserve, backwards = np.split(positive, np.cumsum(sizes))
+        status[closed[opens]] = OPEN
+        status[closed[rubbing]] = np.select([opens[rubbing], forth, back], [OPEN, SLIP_POSITIVE, SLIP_NEGATIVE], STICK)
+        status[away[pressed]] = resting_status(system)[away[pressed]]
+        senses = np.select([backwards, reserve], [SLIP_NEGATIVE, STICK], SLIP_POSITIVE)
+        status[away[rubbing_away]] = np.where(pressed[rubbing_away], senses, OPEN)
         solution = solve_statuses(system, status, now.slip, load, now.rest_gap)
         return None if solution is None else accept_solution(now, solution, load)
 
@@ -188,7 +200,13 @@ class FiniteStep:
         length, a, b, count = self._length, self._closed.size, self._away.size, self._unknowns.count
         mu, rubbing = self._friction(self._away)
         r = mu.size
-        responses = self._responses()
+        # Tractions of the closed nodes and displacements of the open ones, below one another. The columns are unit gaps
+        # and slips of the closed nodes, then unit tractions of the open nodes.
+        slots = np.concatenate([self._away, self._system.grid.size + self._away[rubbing]])
+        places = np.searchsorted(self._unknowns.others, slots)
+        held, beside = self._unknowns.held_columns(np.arange(count))
+        given, further = self._unknowns.given_columns(slots, np.zeros(slots.size))
+        responses = np.block([[held[:count], given[:count]], [beside[places], further[places]]])
         responses[:, :count] *= length
         responses[count:] /= length
         h, s, N, T = np.split(responses, [a, count, count + b], axis=1)
@@ -208,38 +226,3 @@ class FiniteStep:
         mu = self._system.friction[nodes]
         rubbing = np.flatnonzero(mu)
         return mu[rubbing], rubbing
-
-    def _complementarity_vector(self, resting: ContactValues) -> np.ndarray:
-        """Vector (k,) of the problem. `resting` is the solution with all closed nodes stuck."""
-        closed, away = self._closed, self._away
-        (mu, rubbing), (_, rubbing_away) = self._friction(closed), self._friction(away)
-        pressure, gap = resting.pressure[closed], resting.gap[away] / self._length
-        bound, shear = mu * pressure[rubbing], resting.shear[closed[rubbing]]
-        slid = (resting.slip - self._now.slip)[away[rubbing_away]] / self._length
-        return np.r_[pressure, bound + shear, bound - shear, gap, slid, np.zeros(slid.size)]
-
-    def _responses(self) -> np.ndarray:
-        """Tractions of the closed nodes and displacements of the open ones, below one another.
-
-        The columns are unit gaps and slips of the closed nodes, then unit tractions of the open nodes.
-        """
-        unknowns, n = self._unknowns, self._system.grid.size
-        slots = np.concatenate([self._away, n + self._away[self._friction(self._away)[1]]])
-        places, count = np.searchsorted(unknowns.others, slots), unknowns.count
-        held, beside = unknowns.held_columns(np.arange(count))
-        given, further = unknowns.given_columns(slots, np.zeros(slots.size))
-        return np.block([[held[:count], given[:count]], [beside[places], further[places]]])
-
-    def _status(self, z: np.ndarray) -> np.ndarray:
-        """The statuses of the solution `z` (k,)."""
-        closed, away, status = self._closed, self._away, self._base.copy()
-        here, there = (self._friction(nodes)[1] for nodes in (closed, away))
-        sizes = closed.size, here.size, here.size, away.size, there.size
-        positive = z > 1e-12 * float(z.max(initial=0.0))
-        opens, forth, back, pressed, reserve, backwards = np.split(positive, np.cumsum(sizes))
-        status[closed[opens]] = OPEN
-        status[closed[here]] = np.select([opens[here], forth, back], [OPEN, SLIP_POSITIVE, SLIP_NEGATIVE], STICK)
-        status[away[pressed]] = resting_status(self._system)[away[pressed]]
-        senses = np.select([backwards, reserve], [SLIP_NEGATIVE, STICK], SLIP_POSITIVE)
-        status[away[there]] = np.where(pressed[there], senses, OPEN)
-        return status

@@ -169,7 +169,15 @@ class Columns:
         slots = np.arange(block * WIDTH, min((block + 1) * WIDTH, tableau.matrix.shape[1]))
         values = tableau.matrix[:, slots[0] : slots[-1] + 1]
         if tableau.fresh[block] < 0:
-            self._compute(slots, values)
+            basis, position = self._basis, self._position[slots]
+            held, given = np.flatnonzero(position >= 0), np.flatnonzero(position < 0)
+            stacked, count = np.empty((self._order.size, slots.size), order="F"), basis.size
+            if held.size:
+                stacked[:count, held], stacked[count:, held] = basis.held_columns(position[held])
+            if given.size:
+                drag = self._drag[slots[given]]
+                stacked[:count, given], stacked[count:, given] = basis.given_columns(slots[given], drag)
+            self._spread(stacked, values)
             tableau.fresh[block] = 0
         begin, end = int(tableau.fresh[block]), updates - updates % CHUNK
         factors = self._factors(values, slots == tableau.slot[begin:end, None], begin, end)
@@ -238,17 +246,6 @@ class Columns:
         change = self.response(np.r_[np.where(dependent, -displaced, 0.0), balance], self._updates)
         rates[: 2 * n] = np.where(dependent, rates[: 2 * n], displaced)
         rates += change
-
-    def _compute(self, slots: np.ndarray, values: np.ndarray) -> None:
-        """Fill `values` with the columns `slots` before any update."""
-        basis, position = self._basis, self._position[slots]
-        held, given = np.flatnonzero(position >= 0), np.flatnonzero(position < 0)
-        stacked, count = np.empty((self._order.size, slots.size), order="F"), basis.size
-        if held.size:
-            stacked[:count, held], stacked[count:, held] = basis.held_columns(position[held])
-        if given.size:
-            stacked[:count, given], stacked[count:, given] = basis.given_columns(slots[given], self._drag[slots[given]])
-        self._spread(stacked, values)
 
     def _spread(self, stacked: np.ndarray, values: np.ndarray) -> None:
         """Fill `values` with all dependent variables.
