@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -50,6 +51,25 @@ BESIDE_END = 3
 
 CONFORMING_PART = 1e-3
 """Part of a step at which the first contact of a pin is tried on which the hole closes all round."""
+
+
+class Way(NamedTuple):
+    """The step that leads to a first contact.
+
+    Attributes
+    ----------
+    begins : float
+        Fraction of the step at which the contact begins.
+    before, after : ndarray, shape (loads,)
+        Dimensionless loads at the ends of the step.
+    has_slip : bool
+        Whether the slip of the first nodes is found, too.
+    """
+
+    begins: float
+    before: np.ndarray
+    after: np.ndarray
+    has_slip: bool = True
 
 
 def at_rest(
@@ -192,7 +212,7 @@ def first_contact(
     if found is None:
         return release(system, floating, after), 1.0
     resting, begins = found
-    begun = partial(_first_patch, begins=begins, before=before, after=after, has_slip=has_slip)
+    begun = partial(_first_patch, way=Way(begins, before, after, has_slip))
     if system.needs_windows:
         from fastpin.narrow import begun_in_window
 
@@ -223,7 +243,7 @@ def _first_contact_of_joint(
     try:
         pin, part = first_contact(view.system, view.pin, before, after, strict, has_slip)
     except NoEquilibriumError:  # a bush that bends leaves a neat pin no room
-        both = None if beginning is None else _both_at_once(joint, beginning, begins, before, after, seat.status)
+        both = None if beginning is None else _both_at_once(joint, beginning, Way(begins, before, after), seat.status)
         if both is None:
             raise
         return both
@@ -233,26 +253,22 @@ def _first_contact_of_joint(
 
 
 def _both_at_once(
-    joint: JointSystem,
-    floating: Configuration,
-    part: float,
-    before: np.ndarray,
-    after: np.ndarray,
-    seat_status: np.ndarray,
+    joint: JointSystem, floating: Configuration, way: Way, seat_status: np.ndarray
 ) -> tuple[Configuration, float] | None:
     """The first contacts of the pin and of a loose bush in one implicit increment; None where none is found.
 
-    The increment is exact where both fits are neat and there was no load before: all grows in proportion. The bush
-    alone has its first contact at the `part` of the step between the loads `before` and `after`. `seat_status` (n,) are
-    the statuses of this contact, with which the iteration begins.
+    The increment is exact where both fits are neat and there was no load before: all grows in proportion. `way` is the
+    part of the step at which the bush alone has its first contact, and the loads at the ends of the step.
+    `seat_status` (n,) are the statuses of this contact, with which the iteration begins.
     """
+    part, before, after = way[:3]
     resting = floating
     for place in (PIN, SEAT):
         found = at_rest(joint.alone[place], part_of(joint, floating, place), before, after)
         if found is None or found[1] > 0.0:
             return None
         resting = with_part(joint, resting, place, found[0])
-    if all(_is_self_similar(alone, resting, 0.0, before, after) for alone in joint.alone):
+    if all(_is_self_similar(alone, resting, way._replace(begins=0.0)) for alone in joint.alone):
         part = 1.0
     resting.status[joint.interfaces[SEAT].nodes] = seat_status
     for _ in range(30):
@@ -306,29 +322,22 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
     return float(np.clip(place[0], 0.0, 1.0)), place[1:], held
 
 
-def _first_patch(
-    system: System,
-    resting: Configuration,
-    begins: float,
-    before: np.ndarray,
-    after: np.ndarray,
-    most_part: float,
-    has_slip: bool,
-) -> tuple[Configuration, float]:
+def _first_patch(system: System, resting: Configuration, way: Way, most_part: float) -> tuple[Configuration, float]:
     """Make one implicit increment from rest to a load whose contact spans a few nodes.
 
     Friction in one increment would leave a shear in these nodes that does not follow from the load path. So the nodes
     begin without shear, and stick. Three cases need the friction: a moment; a pin that only the remote stress holds;
     and a neat fit. In a neat fit all grows in proportion to the load, and the increment is exact.
 
-    The contact begins at the fraction `begins` of the step between the loads `before` and `after`. `most_part` is the
-    largest part of the rest of the step that the increment may take, unless everything grows in proportion or the hole
-    closes on the pin all round. Returned are the configuration and the fraction of the step at which it holds.
+    `most_part` is the largest part of the rest of the step that the increment may take, unless everything grows in
+    proportion or the hole closes on the pin all round. Returned are the configuration and the fraction of the step at
+    which it holds.
     """
+    begins, before, after, has_slip = way
     patches = len(runs(system.grid, resting.closed))
     least, most = 2 * patches, 4 * patches  # closed nodes that the first contact aims at
     wanted = 0.5 * (least + most)
-    self_similar = _is_self_similar(system, resting, begins, before, after)
+    self_similar = _is_self_similar(system, resting, way)
     left = (1.0 - begins) * (after - before)
     conforming = np.ptp(resting.gap) <= _rounding(system)  # the hole closes on the pin all round
     part = 1.0 if self_similar else CONFORMING_PART if conforming else _hertz_part(system, resting, left)
@@ -397,10 +406,9 @@ def _begun(
     return found
 
 
-def _is_self_similar(
-    system: System, resting: Configuration, begins: float, before: np.ndarray, after: np.ndarray
-) -> bool:
+def _is_self_similar(system: System, resting: Configuration, way: Way) -> bool:
     """Whether everything grows in proportion to the load, as in a neat fit without loads before."""
+    begins, before, after, _ = way
     is_neat = system.is_neat
     if system.problem.gap and begins == 0.0:  # it may be neat beside the middle
         is_neat = bool(resting.gap.max() <= _rounding(system))
