@@ -75,4 +75,4 @@ def follow_friction(run: AnyRun, problem: Problem) -> AnyRun:
         run.restart(shared=True), configuration=now, dissipation=run.dissipation + now.dissipation,
         work=run.work + now.work, repeats=Repeats(), slip_tally=run.slip_tally.to_corner.joined(now.slip_tally),
     )  # fmt: skip
-    return type(run)(run.history, system, run.options, run.recorder, run.progress, start, run.stops, run.strict)
+    return type(run)(run.history, system, run.options, run.recorder, run.progress, start, run.save_after, run.strict)

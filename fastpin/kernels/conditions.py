@@ -178,15 +178,15 @@ def correct(friction, tie, change, values):
 
 
 @compiled
-def put_on_bounds(friction, solution, settled):
-    """Set `settled` to a solution, each value kept within the bounds of its status.
+def put_on_bounds(friction, solution, bounded):
+    """Set `bounded` to a solution, each value kept within the bounds of its status.
 
     Parameters
     ----------
     friction : ndarray, shape (n,)
     solution : ContactValues
         With the statuses. The tractions of open nodes and the gaps of closed ones count as 0.
-    settled : ContactValues
+    bounded : ContactValues
         Pressure, shear and gap are set, and the slip where a node does not stick.
     """
     tiny = ON_BOUND * max(_largest(solution.pressure), SMALLEST)
@@ -203,13 +203,13 @@ def put_on_bounds(friction, solution, settled):
                 pressure, shear = 0.0, 0.0
             elif status == STICK and abs(shear) > bound - tiny:
                 shear = bound if shear >= 0.0 else -bound
-        settled.pressure[i], settled.shear[i], settled.gap[i] = pressure, shear, gap
+        bounded.pressure[i], bounded.shear[i], bounded.gap[i] = pressure, shear, gap
         if status != STICK:
-            settled.slip[i] = solution.slip[i]
+            bounded.slip[i] = solution.slip[i]
 
 
 @compiled
-def beyond_bounds(solution, settled):
+def beyond_bounds(solution, bounded):
     """How far a solution lies beyond the bounds on which :func:`put_on_bounds` has put it.
 
     Returns
@@ -219,11 +219,11 @@ def beyond_bounds(solution, settled):
     """
     traction, gap = 0.0, 0.0
     for i in range(solution.status.size):
-        traction = _larger(traction, settled.pressure[i] - solution.pressure[i])
-        if settled.status[i] == STICK:
-            traction = _larger(traction, settled.shear[i] - solution.shear[i])
-        elif settled.status[i] == OPEN:
-            gap = _larger(gap, settled.gap[i] - solution.gap[i])
+        traction = _larger(traction, bounded.pressure[i] - solution.pressure[i])
+        if bounded.status[i] == STICK:
+            traction = _larger(traction, bounded.shear[i] - solution.shear[i])
+        elif bounded.status[i] == OPEN:
+            gap = _larger(gap, bounded.gap[i] - solution.gap[i])
     return traction, gap
 
 
@@ -270,7 +270,7 @@ def _multiply(operator, values, elastic):
 
 
 @compiled
-def settle(tableau, updates, operator, equations, contact, sides, settled):
+def correct_held(tableau, updates, operator, equations, contact, sides, corrected):
     """Correct a held contact until statuses, held slip and load hold to rounding, and put it on its bounds.
 
     Parameters
@@ -283,7 +283,7 @@ def settle(tableau, updates, operator, equations, contact, sides, settled):
     contact : Contact
         It is not changed.
     sides : RightSides
-    settled : ContactValues
+    corrected : ContactValues
         All its arrays are set: to the corrected values within their bounds, see :func:`put_on_bounds`.
 
     Returns
@@ -297,7 +297,7 @@ def settle(tableau, updates, operator, equations, contact, sides, settled):
     missing, change = np.empty(2 * n + motions), np.empty(2 * n + motions)
     pressure, shear, motion = np.zeros(n), np.zeros(n), contact.motion.copy()
     for i in range(n):
-        settled.status[i], settled.slip[i] = contact.status[i], contact.slip[i]
+        corrected.status[i], corrected.slip[i] = contact.status[i], contact.slip[i]
         if contact.status[i] != OPEN:
             pressure[i], shear[i] = contact.pressure[i], contact.shear[i]
     held = ContactValues(pressure, shear, contact.gap, contact.slip, contact.status, motion)
@@ -313,10 +313,10 @@ def settle(tableau, updates, operator, equations, contact, sides, settled):
         _respond(tableau, updates, missing, change)
         correct(equations.friction, contact.tie, change, held)
     for k in range(motions):
-        settled.motion[k] = motion[k]
+        corrected.motion[k] = motion[k]
     solution = ContactValues(pressure, shear, true[:n], true[n:], contact.status, motion)
-    put_on_bounds(equations.friction, solution, settled)
-    traction, gap = beyond_bounds(solution, settled)
+    put_on_bounds(equations.friction, solution, corrected)
+    traction, gap = beyond_bounds(solution, corrected)
     return error, before, traction, gap
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.kernels.conditions import settle
+from fastpin.kernels.conditions import correct_held
 from fastpin.kernels.exchange import EXCHANGES, QUEUED, REACHED, UPDATES, follow
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.jit import compiled
@@ -77,7 +77,7 @@ def begin(table, stack, contact, friction, displaced, forces, tableau):
 @compiled
 def step(
     begins, stack, operator, equations, displaced, forces, sides, contact, tableau, load, queue, fixed, typical, stop,
-    most_events, all_at_once, settled,
+    most_events, all_at_once, corrected,
 ):  # fmt: skip
     """Follow the load from sums[TIME] to `stop`, and correct the contact there.
 
@@ -95,14 +95,14 @@ def step(
         Those of the load at `stop`.
     contact, tableau, load, queue, fixed, typical, stop, most_events, all_at_once
         See :func:`fastpin.kernels.exchange.follow`.
-    settled : ContactValues
+    corrected : ContactValues
         Is set to the corrected contact if `stop` is reached.
 
     Returns
     -------
     (int, bool, (float, float, float, float))
         The code of :func:`fastpin.kernels.exchange.follow`; whether the load has turned where the step begins, see
-        :func:`begin`; and the errors at `stop`, see :func:`fastpin.kernels.conditions.settle`.
+        :func:`begin`; and the errors at `stop`, see :func:`fastpin.kernels.conditions.correct_held`.
     """
     n, counts, turned = contact.status.size, queue.counts, False
     if begins:
@@ -118,5 +118,5 @@ def step(
     code = follow(tableau, contact, load, queue, equations.friction, fixed, typical, stop, most_events, all_at_once)
     errors = (0.0, 0.0, 0.0, 0.0)
     if code == REACHED:
-        errors = settle(tableau, counts[UPDATES], operator, equations, contact, sides, settled)
+        errors = correct_held(tableau, counts[UPDATES], operator, equations, contact, sides, corrected)
     return code, turned, errors

@@ -169,7 +169,7 @@ class Correction(NamedTuple):
 
     Attributes
     ----------
-    settled : Configuration
+    corrected : Configuration
         The configuration with its solution, each value kept within the bounds of its status.
     error, drift : float
         Relative error that is left, and the one of gap and slip before the correction.
@@ -177,7 +177,7 @@ class Correction(NamedTuple):
         How far the solution lies beyond its bounds, by traction and by gap.
     """
 
-    settled: Configuration
+    corrected: Configuration
     error: float
     drift: float
     beyond: tuple[float, float]
@@ -187,9 +187,9 @@ class Correction(NamedTuple):
         cls, system: System, before: Configuration, solution: ContactValues, error: float, drift: float
     ) -> Correction:
         """The correction of the configuration `before` by the solution of its statuses."""
-        settled = snap_to_bounds(system, before, solution)
-        beyond = conditions.beyond_bounds(solution, settled.values)
-        return cls(settled, error, drift, beyond)
+        corrected = snap_to_bounds(system, before, solution)
+        beyond = conditions.beyond_bounds(solution, corrected.values)
+        return cls(corrected, error, drift, beyond)
 
 
 def snap_to_bounds(system: System, configuration: Configuration, solution: ContactValues) -> Configuration:
@@ -323,7 +323,11 @@ def slip_tally_with(configuration: Configuration, tally: SlipTally | None = None
     tally = configuration.slip_tally if tally is None else tally
     if not tally.is_counted:
         return tally
-    return tally.with_slip(configuration.slip - configuration.rest_slip, configuration.closed)
+    tally, closed = tally.copy(), configuration.closed
+    slip = (configuration.slip - configuration.rest_slip)[closed]  # the slip that users see
+    tally.sums[2, closed] = np.minimum(tally.sums[2, closed], slip)
+    tally.sums[3, closed] = np.maximum(tally.sums[3, closed], slip)
+    return tally
 
 
 def slip_tally_between(before: Configuration, after: Configuration) -> SlipTally:

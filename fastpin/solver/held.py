@@ -235,13 +235,13 @@ class HeldColumns:
         system, contact, now = self._system, self._contact, self._before + stop * self._rate
         sides = RightSides(system.load_displacement(now), system.load_forces(now), self._rest_gap)
         pressure, shear, gap, slip = np.empty((4, contact.status.size))
-        self._settled = ContactValues(pressure, shear, gap, slip, contact.status.copy(), contact.motion.copy())
+        self._corrected = ContactValues(pressure, shear, gap, slip, contact.status.copy(), contact.motion.copy())
         before: np.ndarray | None = None
         while True:
             code, turned, self._errors = held.step(
                 not self._has_begun, self._table.stack, system.operator.matrix, system.equations, self._displaced,
                 self._forces, sides, contact, self.tableau, load, queue, system.fixed, system.operator.typical, stop,
-                most_events, all_at_once, self._settled,
+                most_events, all_at_once, self._corrected,
             )  # fmt: skip
             self.turned, self._has_begun, events = self.turned or turned, True, int(queue.counts[EVENTS])
             is_stuck = events == self._events
@@ -266,5 +266,5 @@ class HeldColumns:
     def correct(self, now: Configuration) -> Correction:
         """Correct tractions and motion of `now`, at the stop that was reached, to rounding."""
         error, drift, *beyond = self._errors
-        values = {**self._settled._asdict(), "load": now.load.copy(), "slip_tally": now.slip_tally.copy()}
+        values = {**self._corrected._asdict(), "load": now.load.copy(), "slip_tally": now.slip_tally.copy()}
         return Correction(now.changed(**values), error, drift, (beyond[0], beyond[1]))

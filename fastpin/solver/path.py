@@ -153,7 +153,7 @@ class PathStep:
             If the load can't be followed any further.
         """
         system, counts = self.system, self._queue.counts
-        most_events, checked, settlings = MOST_EVENTS * system.grid.size, 0, 0
+        most_events, checked, tries = MOST_EVENTS * system.grid.size, 0, 0
         while True:
             code = self._columns.follow(self._load, self._queue, stop, most_events, self._all_at_once)
             updates = int(counts[exchange.UPDATES])
@@ -189,14 +189,14 @@ class PathStep:
                 if (correction := self._correct()) is None:
                     checked = 0
                     continue
-                last = settlings == 3
+                last = tries == 3
                 if not exceeds_bounds(correction, last):
-                    return correction.settled
+                    return correction.corrected
                 if last:
                     raise StepLostError(exchange.CYCLING, self.fraction)
                 # When a load is almost gone, rounding can keep a status too long. At its limit it changes at once.
-                self._take(correction.settled)
-                settlings += 1
+                self._take(correction.corrected)
+                tries += 1
 
     def _book(self) -> None:
         """Write load, work and dissipation into the present configuration."""
@@ -225,8 +225,8 @@ class PathStep:
             return False
         counts = self._queue.counts
         assert isinstance(self._columns, HeldColumns)
-        settled = self._columns.turned or counts[exchange.ROUND] > 0 or counts[exchange.EVENTS] > 0
-        if settled or counts[exchange.NEXT] == counts[exchange.QUEUED]:
+        has_begun = self._columns.turned or counts[exchange.ROUND] > 0 or counts[exchange.EVENTS] > 0
+        if has_begun or counts[exchange.NEXT] == counts[exchange.QUEUED]:
             self._first_status = None
         return self._first_status is not None
 
@@ -335,7 +335,7 @@ class PathStep:
         correction = self._correct()
         if correction is None:
             return False
-        self._take(correction.settled)
+        self._take(correction.corrected)
         if self.rebuilds > before:
             return False
         self._columns.refine_rates(self.rate)
@@ -409,7 +409,7 @@ def follow_whole(system: System, start: Configuration, after: np.ndarray, memory
     correction = columns.correct(now)
     if correction.drift > SEVERE_DRIFT or not correction.error <= MOST_ERROR or exceeds_bounds(correction):
         return None
-    now, counts = correction.settled, queue.counts
+    now, counts = correction.corrected, queue.counts
     _, now.dissipation, now.work, now.seat_dissipation = queue.sums.tolist()
     return WholeStep(now, contact.touched, int(counts[exchange.EVENTS]), int(counts[exchange.EXCHANGES]))
 
@@ -447,8 +447,8 @@ def exceeds_bounds(correction: Correction, last: bool = False) -> bool:
     At a stop where gaps have opened this instant, the largest gap is itself rounding. At the `last` trial rounding of
     the largest displacement counts, too.
     """
-    settled, (traction, gap) = correction.settled, correction.beyond
-    if traction > 0.0 and traction > MOST_DRIFT * settled.pressure.max():
+    corrected, (traction, gap) = correction.corrected, correction.beyond
+    if traction > 0.0 and traction > MOST_DRIFT * corrected.pressure.max():
         return True
-    length = max(float(np.abs(settled.slip).max()), float(np.abs(settled.motion).max())) if last else 0.0
-    return bool(gap > conditions.ROUNDING * length and gap > MOST_DRIFT * settled.gap.max())
+    length = max(float(np.abs(corrected.slip).max()), float(np.abs(corrected.motion).max())) if last else 0.0
+    return bool(gap > conditions.ROUNDING * length and gap > MOST_DRIFT * corrected.gap.max())

@@ -159,7 +159,7 @@ class CornerLog:
         return periods
 
     def period(
-        self, now: int, length: int, since: int, keep: KeepRule, stops: Collection[int]
+        self, now: int, length: int, since: int, keep: KeepRule, save_after: Collection[int]
     ) -> tuple[list[CornerEntry], int, dict[CycleKey, int]] | None:
         """Find the period that repeats after the corner `now`.
 
@@ -174,8 +174,8 @@ class CornerLog:
         keep : KeepRule
             The rule for kept states. Until the contact has been periodic for a common multiple of `length` and
             ``keep.every`` corners, only corners before the next kept corner repeat.
-        stops : collection of int
-            Numbers of corners at which the recorder wants to see the run. The period repeats to the next stop at most.
+        save_after : collection of int
+            Numbers of corners after which a restart is saved. The period repeats to the next one of them at most.
 
         Returns
         -------
@@ -192,7 +192,9 @@ class CornerLog:
         ahead = same_ahead(history, following, length)
         if unkept:
             ahead = min(ahead, keep.every - 1 - following % keep.every)
-        ahead = min(ahead, min((stop for stop in stops if stop > following), default=len(history)) - following)
+        ahead = min(
+            ahead, min((corner for corner in save_after if corner > following), default=len(history)) - following
+        )
         if ahead < length:
             return None
         logged = [self.log[k - length] for k in range(length)]

@@ -107,8 +107,8 @@ class Run:
     progress : callable, optional
     start : Restart, optional
         The restart from which the run continues. Without it the run starts from no load.
-    stops : collection of int
-        Numbers of corners at which the recorder wants to see the run.
+    save_after : collection of int
+        Numbers of corners after which the recorder saves a restart.
     strict : bool
         Whether the run ends where the contact is too narrow for the nodes. If not, a contact that carries next to
         nothing is let go, and a new one begins without memory.
@@ -151,7 +151,7 @@ class Run:
         recorder: Recorder | None = None,
         progress: RunProgress | None = None,
         start: Restart | None = None,
-        stops: Collection[int] = (),
+        save_after: Collection[int] = (),
         strict: bool = False,
     ) -> None:
         self.history = history
@@ -159,7 +159,7 @@ class Run:
         self.options = options
         self.recorder = recorder
         self.progress = progress
-        self.stops = stops
+        self.save_after = save_after
         self.strict = strict
         self.keep = options.keep_rule
         self.fractions = options.fractions if self.keep.inside else options.fractions[-1:]
@@ -321,7 +321,12 @@ class Run:
             position.reached = stop
             if vanishes and (position.now.load != load).any():
                 self._release(load)
-            self._release_if_unloaded(piece, load)
+            if not is_pushed(load) and position.now.closed[pin].any():  # after a complete unloading
+                left, before = float(position.now.pressure[pin].max()), force_of(piece.before)
+                if self.system.drive.has_displacements:  # the nodal forces hold the rounding of a large displacement
+                    left, before = float(self.system.weights @ position.now.pressure), 1.0
+                if left <= SLIGHT * before:  # the contact carries nothing any more
+                    self._release(load)
             if stop in kept and stop < 1.0 and self.recorder is not None:
                 self._keep(self.corner, stop)
             self.report(stop)
@@ -355,17 +360,6 @@ class Run:
         if part == 1.0:
             now.load = load
         position.fresh = part if part < 1.0 else 0.0
-
-    def _release_if_unloaded(self, piece: Piece, load: np.ndarray) -> None:
-        """Release the pin after a complete unloading, when the contact carries nothing any more."""
-        pin = self.system.interfaces[0].nodes
-        if is_pushed(load) or not self.now.closed[pin].any():
-            return
-        left, before = float(self.now.pressure[pin].max()), force_of(piece.before)
-        if self.system.drive.has_displacements:  # the forces of the nodes hold the rounding of a large displacement
-            left, before = float(self.system.weights @ self.now.pressure), 1.0
-        if left <= SLIGHT * before:
-            self._release(load)
 
     def _release(self, load: np.ndarray) -> None:
         """Release the pin at a load where it carries nothing."""
@@ -408,7 +402,7 @@ class Run:
         The present configuration has returned every `length` corners since the corner `since`.
         """
         last, energy = self.corner - 1, self.system.scales.energy
-        period = self.corner_log.period(last, length, since, self.keep, self.stops)
+        period = self.corner_log.period(last, length, since, self.keep, self.save_after)
         if period is None:
             return
         logged, times, counts = period

@@ -54,15 +54,6 @@ class SlipTally:
         whole.sums[:, nodes] = part.sums
         return whole
 
-    def with_slip(self, slip: np.ndarray, closed: np.ndarray) -> SlipTally:
-        """This tally with the `slip` (n,) that users see in its extremes, at the nodes that are `closed`, bool (n,)."""
-        if not self.is_counted:
-            return self
-        tally, slip = self.copy(), slip[closed]
-        tally.sums[2, closed] = np.minimum(tally.sums[2, closed], slip)
-        tally.sums[3, closed] = np.maximum(tally.sums[3, closed], slip)
-        return tally
-
     def joined(self, later: SlipTally) -> SlipTally:
         """The tally of this part of a history and the `later` part together; not counted if the later part is not."""
         if not later.is_counted:

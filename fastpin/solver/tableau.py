@@ -208,8 +208,8 @@ class Columns:
     def correct(self, now: Configuration) -> Correction:
         """Correct tractions and motion of `now` until its statuses, its held slip and its load hold to rounding.
 
-        The tableau makes the corrections, and the matrices check them. :func:`fastpin.kernels.conditions.settle` does
-        the same in one call where the operator is stored.
+        The tableau makes the corrections, and the matrices check them. Where the operator is stored,
+        :func:`fastpin.kernels.conditions.correct_held` does the same in one call.
         """
         system, n = self._system, self._system.grid.size
         loaded, forces = system.load_displacement(now.load), system.load_forces(now.load)

@@ -71,8 +71,8 @@ class Task:
         A ready grid. ``options.nodes`` is then not used.
     progress : callable, optional
         Called as ``progress(done_steps, all_steps)`` now and then.
-    stops : frozenset of int
-        Numbers of corners at which the recorder wants to see the run.
+    save_after : frozenset of int
+        Numbers of corners after which the recorder saves a restart.
 
     Raises
     ------
@@ -85,7 +85,7 @@ class Task:
     options: SolveOptions = field(default_factory=SolveOptions)
     grid: Grid | None = None
     progress: RunProgress | None = None
-    stops: frozenset[int] = frozenset()
+    save_after: frozenset[int] = frozenset()
 
     def __post_init__(self) -> None:
         instance("problem", self.problem, Problem, "a Problem")
@@ -241,7 +241,7 @@ class Task:
         is_joint = self.problem.seat is not None
         build = build_system if is_joint or self.options.method == "path" else System.build
         system = build(self.problem, grid, self.force if start is None else start.force)
-        run = Run(self.history, system, self.options, recorder, progress, start, self.stops, strict)
+        run = Run(self.history, system, self.options, recorder, progress, start, self.save_after, strict)
         if recorder is not None:
             recorder.begin(run)
         run.follow()

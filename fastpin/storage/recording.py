@@ -150,7 +150,7 @@ def _record_coarse(path: Path, task: Task) -> None:
     """
     beside, run = coarse_of(path), provenance(path)["run"]
     journal.check_beside(beside)
-    halves = replace(coarse_task(task, load(path, states=[]).grid), stops=frozenset())
+    halves = replace(coarse_task(task, load(path, states=[]).grid), save_after=frozenset())
     try:
         with words_for_coarse(halves):
             if not (beside.is_file() and _title_of(beside) == run):

@@ -342,11 +342,13 @@ def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int, nodes
         raise InputError("after", f"{path} was not written by a run: nothing can continue from it")
     start = read_restart(max(stored, key=lambda group: int(group.attrs["corner"])), nodes)
     task = stored_task(file)
-    return replace(task, history=history[:after], options=task.options.changed(shortcut=True), stops=frozenset()), start
+    return replace(
+        task, history=history[:after], options=task.options.changed(shortcut=True), save_after=frozenset()
+    ), start
 
 
 def stored_task(file: h5py.File) -> Task:
     """Read the task of the run of a file, on its grid."""
-    stops = frozenset(file["solver"].attrs["save_after"].tolist())
+    save_after = frozenset(file["solver"].attrs["save_after"].tolist())
     problem, history, options = layout.read_problem(file), layout.read_history(file), layout.read_options(file)
-    return Task(problem, history, options, layout.read_grid(file), stops=stops)
+    return Task(problem, history, options, layout.read_grid(file), save_after=save_after)

@@ -267,7 +267,7 @@ class FileRecorder:
     ----------
     path : Path
     task : Task
-        The task that is followed. Its stops get a restart in the file.
+        The task that is followed. Its corners `save_after` get a restart in the file.
     title : str
     about : About
     beside : mapping of str
@@ -338,7 +338,7 @@ class FileRecorder:
         task = self.task
         attributes = {**layout.option_attributes(task.options), "nodes": run.grid.size, "title": self._title}
         attributes |= {**self._about.given(), **layout.beside_attributes(self._beside)}
-        attributes |= {"arc_chosen": self.chosen_arc, "save_after": sorted(task.stops)}
+        attributes |= {"arc_chosen": self.chosen_arc, "save_after": sorted(task.save_after)}
         self.file.begin(task.problem, task.history, run.grid, attributes)
         for name in ("start", "latest"):
             self._write_restart(self._h5.create_group(f"restart/{name}"))
@@ -377,7 +377,7 @@ class FileRecorder:
         """Write a restart at a stop of the task. Commit after a long wait. Write a checkpoint if one is due."""
         self._corner = list(self._at)
         now = time.monotonic()
-        if self._run.corner in self.task.stops and str(self._run.corner) not in self._h5["restart"]:
+        if self._run.corner in self.task.save_after and str(self._run.corner) not in self._h5["restart"]:
             self._write_restart(self._h5.create_group(f"restart/{self._run.corner}"))
             self._commit()
         elif now > self._next_commit:
