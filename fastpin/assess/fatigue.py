@@ -135,9 +135,9 @@ class Assessed(NamedTuple):
         return self.how.method == "edge" and self.how.angles is None
 
 
-def half(progress: outputs.Follow | None, begin: float) -> outputs.Follow | None:
-    """Return the progress of a half of the work, which begins at this part of it."""
-    return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
+def stretch(progress: outputs.Follow | None, begin: float, end: float) -> outputs.Follow | None:
+    """Return the progress of a stretch of the work, which begins and ends at these parts of it."""
+    return None if progress is None else lambda done, total: progress(begin + (end - begin) * done / total, 1.0)
 
 
 def find(case: Case, held: Held | None, progress: outputs.Follow | None = None) -> Assessed | None:
@@ -149,8 +149,8 @@ def find(case: Case, held: Held | None, progress: outputs.Follow | None = None) 
     result = held.whole()
 
     try:
-        found = result.assessed_fatigue(case.fatigue, half(progress, 0.0))
-        return Assessed(case.fatigue, found, result.assessed_reserves(case.fatigue, half(progress, 0.5)))
+        found = result.assessed_fatigue(case.fatigue, stretch(progress, 0.0, 0.5))
+        return Assessed(case.fatigue, found, result.assessed_reserves(case.fatigue, stretch(progress, 0.5, 1.0)))
     except InputError as error:
         return Assessed(case.fatigue, [], [], str(error))
 

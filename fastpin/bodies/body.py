@@ -27,10 +27,8 @@ PinLoad = Literal["centre", "body"]
 """Kinds of load of a solid pin."""
 
 THINNEST = 0.04
-"""Least wall of a tube or ring, in parts of its larger radius.
-
-A thinner wall is a shell: it bends 10,000 times as much as its surface yields, and contacts are lost between the nodes.
-"""
+"""Least wall of a tube or ring, in parts of its larger radius. A thinner wall is a shell: it bends 10,000 times as much
+as its surface yields, and contacts are lost between the nodes."""
 
 WIDEST = 1e6
 """Largest outer radius, in parts of the hole radius. A larger body is an infinite plate."""
@@ -523,6 +521,10 @@ class PlateBody(BodyBase):
     def without_others(self) -> PlateBody:
         """The plate without what other pins do to its hole in one state of a joint; itself where nothing does."""
         return self
+
+    def with_others(self, columns: np.ndarray) -> np.ndarray:
+        """Columns of :func:`fastpin.bodies.compliance.state_columns` for a plate's field: with those of other pins."""
+        return columns
 
     def highest_inside(self, rim: Rim) -> int:
         """The highest harmonic that matters in the plate, up to its outer rim."""

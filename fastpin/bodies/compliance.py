@@ -456,7 +456,7 @@ class Compliance(PlateBody):
         decaying[:, 0] = 0.0  # the constant belongs to the growing ones
         if self.outline:
             growing[:2], growing[2, 2:] = 0.0, 0.0  # only negative powers of z stay
-            column = self._column(rim, tractions, remote, self._inside.order)
+            column = self.with_others(self._column(rim, tractions, remote, self._inside.order))
             return PlateWalls(Wall(growing, decaying, 1.0, 1.0, (partial(self._inside.smooth, column),)), None)
         far = self.reach
         return PlateWalls(Wall(growing * far**order / [[1.0], [1.0], [far * far]], decaying, 1.0, far), None)

@@ -14,7 +14,7 @@ from fastpin.errors import InputError
 from fastpin.model.checks import whole_number
 from fastpin.solver import Interrupted, SolveError
 
-JUDGED = "margins and fatigue"
+JUDGED = "margins, fatigue and crack"
 """Text of the progress bar after the solution."""
 
 
@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
     draws = {options.plot: partial(figures.plot_joint, state=last - 1), options.shares: figures.plot_shares}
     files = [(name, partial(draw, result, title=case.title)) for name, draw in draws.items()]
     with Bar(1.0, JUDGED) as bar:
-        judged = report.joints.judged(result, case.fatigue, not code, progress_to(bar))
+        judged = report.joints.judged(result, case.fatigue, not code, progress_to(bar), case.crack)
     unit = report.joints.joint_units(result.joint)
     document = partial(outputs.whole_document, report.joints.JOINT, judged, unit, title=case.title)
     text = [*filter(None, [case.title]), *report.joints.describe(judged).split("\n")]

@@ -8,6 +8,7 @@ from .read import parse_joint as parse_joint
 from .read import read_joint as read_joint
 from .result import JointResult as JointResult
 from .result import JointState as JointState
+from .result import SectionCrack as SectionCrack
 from .result import SectionDamage as SectionDamage
 from .result import SectionMargin as SectionMargin
 from .solving import solve_joint as solve_joint

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
@@ -106,15 +106,16 @@ class JointPlate:
         """Whether only its pins hold the plate."""
         return self.moves == "free"
 
-    def lug(self, centres: Sequence[complex], radius: float, plane: Plane) -> tuple[Lug, tuple[str, ...]]:
+    def lug(self, pins: Mapping[str, complex], radius: float, plane: Plane) -> tuple[Lug, tuple[str, ...]]:
         """The plate as a lug round its first pinned hole, and the names of its further pinned holes.
 
-        `centres` are those of the pinned holes, m, and `radius` is theirs.
+        `pins` maps names of pins to the centres of their holes, m, and `radius` is that of the holes.
         """
-        centres = [checks.point("centres", each) for each in checks.items("centres", centres, "a list of points")]
-        if not centres:
-            raise InputError("centres", "must have at least one point")
-        first = centres[0]
+        if not isinstance(pins, Mapping) or not pins:
+            raise InputError("pins", f"must map names to points, not {checks.as_toml(pins)}")
+        centres = {name: checks.point("pins", centre) for name, centre in pins.items()}
+        own, *others = centres
+        first = centres[own]
         shifted = tuple(
             Part(
                 part.name, part.start - first, part.end - first, None if part.through is None else part.through - first
@@ -124,12 +125,12 @@ class JointPlate:
         free = tuple(Hole(hole.name, hole.centre - first, hole.radius) for hole in self.holes)
         taken = {part.name for part in shifted} | {hole.name for hole in free}
         names = []
-        for number_ in range(1, len(centres)):
-            name = f"pin hole {number_ + 1}"
+        for other in others:
+            name = f"hole of {other}"
             while name in taken:
                 name += "'"
             names.append(name)
-        pinned = tuple(Hole(name, centre - first, radius) for name, centre in zip(names, centres[1:], strict=True))
+        pinned = tuple(Hole(name, centres[other] - first, radius) for name, other in zip(names, others, strict=True))
         material = self.material
         try:
             holes = (*free, *pinned)
@@ -270,7 +271,7 @@ class Joint:
                 words = f"the holes of {one.name} and {other.name} in {plate.name} are {apart:.4g} m apart"
                 raise InputError("at", f"{words}; they need {LEAST_PITCH:g} diameters, {least:.4g} m")
         if not plate.is_infinite:
-            plate.lug([pin.at for pin in through], self.radius, self.plane)
+            plate.lug({pin.name: pin.at for pin in through}, self.radius, self.plane)
 
     @property
     def radius(self) -> float:
@@ -291,6 +292,20 @@ class Joint:
             if (one.name, other.name) == (pin, plate):
                 return place
         raise InputError("plate", f"pin {pin} does not go through {plate}")
+
+    def lug(self, pin: str, plate: str) -> tuple[Lug, tuple[str, ...]]:
+        """A plate as a lug round the hole of a pin, and the names of its further pinned holes.
+
+        Raises
+        ------
+        InputError
+            If a name is unknown, or the plate is infinite.
+        """
+        own, of = self.sections[self.place(pin, plate)]
+        if of.is_infinite:
+            raise InputError("plate", f"{plate} is infinite: give it an outline, and its stress is known everywhere")
+        others = {other.name: other.at for other, through in self.sections if through is of and other is not own}
+        return of.lug({own.name: own.at} | others, self.radius, self.plane)
 
     @cached_property
     def load_names(self) -> tuple[str, ...]:

@@ -10,13 +10,13 @@ import itertools
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fastpin.casefile.beside import read_assessment
+from fastpin.casefile.beside import read_assessment, read_crack
 from fastpin.casefile.lug import limits_of, point_of
 from fastpin.casefile.materials import read_material
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.joints.parts import REMOTE_NAMES, Joint, JointPin, JointPlate, tate_rosenfeld
-from fastpin.joints.result import check_fatigue
+from fastpin.joints.result import SectionCrack, check_crack, check_fatigue
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
 from fastpin.lugs.outline import Part, rectangle
 from fastpin.model.assessment import FatigueAssessment
@@ -28,12 +28,13 @@ from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
 JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8")
 """A commented joint file: a single lap of three bolts."""
 
-_KEYS: dict[str, tuple[str, ...]] = {
+JOINT_KEYS: dict[str, tuple[str, ...]] = {
     "joint": ("plane", "nodes", "harmonics", "repeat"),
     "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves"),
     "pin": ("name", "at", *MATERIAL_KEYS, "diameter", "plates", "clearance", "friction", "flexibility"),
     "load": (),
     "fatigue": BESIDE["fatigue"].keys,
+    "crack": ("pin", "plate", *(key for key in BESIDE["crack"].keys if key not in ("body", "place"))),
 }
 """Sections of a joint file and their keys. The keys of [[load]] are the loads of the joint."""
 
@@ -43,6 +44,7 @@ _KINDS: dict[str, Any] = {
     | of("length", "at", "diameter")
     | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility"},
     "fatigue": CASE["fatigue"],
+    "crack": CASE["crack"],
 }
 """The kinds of the keys, apart from those of the loads."""
 
@@ -63,6 +65,8 @@ class JointFile(NamedTuple):
     harmonics : int or None
     fatigue : FatigueAssessment or None
         How the fatigue at all pins is assessed, for :meth:`fastpin.joints.JointResult.assessed_fatigue`.
+    crack : SectionCrack or None
+        A crack at the hole of a pin, for :meth:`fastpin.joints.JointResult.crack_growth`.
     """
 
     joint: Joint
@@ -71,6 +75,7 @@ class JointFile(NamedTuple):
     nodes: int
     harmonics: int | None
     fatigue: FatigueAssessment | None = None
+    crack: SectionCrack | None = None
 
 
 def read_joint(path: str | Path) -> JointFile:
@@ -100,7 +105,7 @@ def _joint_file(source: CaseText) -> JointFile | None:
     names = [name for block in source.blocks("load") for name in block.table]
     stresses = [name for name in names if name.rpartition(".")[2] in REMOTE_NAMES]
     source.to_si(_KINDS | {"load": {ANY: "force", **dict.fromkeys(stresses, "traction")}}, True)
-    source.check_sections(_KEYS, ("plate", "pin", "load"))
+    source.check_sections(JOINT_KEYS, ("plate", "pin", "load"))
     title, settings = source.root.checked("title", string) or "", source.section("joint")
     plane = settings.choice("plane", ("stress", *(word for word in PLANES if word != "stress")))
     nodes = settings.checked("nodes", whole_number, LEAST_NODES, MOST_NODES) or 96
@@ -110,6 +115,7 @@ def _joint_file(source: CaseText) -> JointFile | None:
     pins = [each for block in _required(source, "pin") for each in _pins(source, block, plates)]
     loads = _required(source, "load")
     how = read_assessment(source, source.section("fatigue")) if "fatigue" in source.root else None
+    crack = _crack(source) if "crack" in source.root else None
     if source.faults or plane is None or None in plates or None in pins:
         return None
     try:
@@ -128,12 +134,19 @@ def _joint_file(source: CaseText) -> JointFile | None:
         return None
     values = load_values(joint, corners * times)
     if how is not None:
-        try:
-            check_fatigue(joint, how, values)
-        except InputError as error:
-            source.section("fatigue").report(str(error), error.field)
-            return None
-    return JointFile(joint, corners * times, title, nodes, harmonics, how)
+        source.section("fatigue").made(lambda: check_fatigue(joint, how, values))
+    if crack is not None:
+        source.section("crack").made(lambda: check_crack(joint, crack, len(values)))
+    return None if source.faults else JointFile(joint, corners * times, title, nodes, harmonics, how, crack)
+
+
+def _crack(source: CaseText) -> SectionCrack | None:
+    """The crack of a file; None if a key is missing or wrong (reported)."""
+    section = source.section("crack")
+    for key in ("pin", "plate"):
+        section.require(key)
+    pin, plate, how = section.checked("pin", any_text), section.checked("plate", any_text), read_crack(source, section)
+    return None if pin is None or plate is None or how is None else SectionCrack(pin, plate, how)
 
 
 def _required(source: CaseText, name: str) -> list[Section]:

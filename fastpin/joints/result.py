@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from fastpin.bodies.compliance import LEAST_ORDER, Compliance
+from fastpin.cracks.growing import Growth, planned_growth
 from fastpin.damage.assessed import assessed_fatigue
 from fastpin.damage.spectrum import SpectrumDamage
 from fastpin.errors import InputError
+from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import Joint
+from fastpin.model import crack as crack_model
 from fastpin.model.assessment import FatigueAssessment, check_assessment
-from fastpin.model.checks import check_callable, instance, known_name
+from fastpin.model.checks import check_callable, instance, known_name, true_or_false
+from fastpin.model.crack import CrackGrowth
 from fastpin.states.extremes import KeptStates, find_extremes
 from fastpin.states.margins import Margin, static_margins
 from fastpin.states.state import State
@@ -28,6 +34,14 @@ class SectionDamage(NamedTuple):
     pin: str
     plate: str
     found: SpectrumDamage
+
+
+class SectionCrack(NamedTuple):
+    """A crack of the plate where a pin goes through it, and how it grows."""
+
+    pin: str
+    plate: str
+    how: CrackGrowth
 
 
 class SectionMargin(NamedTuple):
@@ -137,10 +151,33 @@ class JointResult(Sequence[JointState]):
         pins, plates = len(self.joint.pins), len(self.joint.plates)
         return f"<JointResult: {pins} pins, {plates} plates, {len(self)} states, {self.nodes} nodes a contact>"
 
-    def of(self, pin: str, plate: str) -> list[State]:
-        """The states of one pin in one plate. Unknown names raise :class:`InputError`."""
+    def of(self, pin: str, plate: str, whole: bool = False) -> list[State]:
+        """The states of one pin in one plate.
+
+        Parameters
+        ----------
+        pin, plate : str
+        whole : bool
+            Whether the states know the whole plate, for its stress anywhere, the stress along all its edges, and
+            cracks. Places count from the centre of the pin's hole. The first question takes some seconds.
+
+        Raises
+        ------
+        InputError
+            If a name is unknown, or the plate is infinite and the whole of it is asked for.
+        """
         place = self.joint.place(pin, plate)
-        return [state.contacts[place] for state in self.states]
+        states = [state.contacts[place] for state in self.states]
+        if not true_or_false("whole", whole):
+            return states
+        lug, pinned = self.joint.lug(pin, plate)
+        outline, found = json.dumps(lug.document()), []
+        for state in states:
+            hole = state.problem.plate_body
+            assert isinstance(hole, HoleInPlate)
+            body = replace(hole, outline=outline, pinned=pinned)
+            found.append(replace(state, problem=replace(state.problem, plate_body=body)))
+        return found
 
     def shares(self, plate: str) -> dict[str, np.ndarray]:
         """The share of each pin in the force on a plate at every state, by name; see :meth:`JointState.shares`."""
@@ -210,6 +247,28 @@ class JointResult(Sequence[JointState]):
             found += [SectionDamage(pin.name, plate.name, each) for each in at_pin]
         return sorted(found, key=lambda one: (how.criteria.index(one.found.criterion), -one.found.hot_spot.damage))
 
+    def crack_growth(self, crack: SectionCrack, progress: Callable[[float, float], None] | None = None) -> Growth:
+        """The growth of a crack of a plate where a pin goes through it.
+
+        It grows under the :attr:`last_cycle`, or else under the whole history as a spectrum. It does not change the
+        forces of the pins, nor their contact. Angles and places count from the centre of the pin's hole.
+
+        Parameters
+        ----------
+        crack : SectionCrack
+        progress : callable, optional
+            See :func:`fastpin.cracks.planned_growth`.
+
+        Raises
+        ------
+        InputError
+            See :func:`check_crack`; also if the crack can't be followed.
+        """
+        instance("crack", crack, SectionCrack, "a SectionCrack")
+        check_crack(self.joint, crack, len(self))
+        cycle, states = self.last_cycle, self.of(crack.pin, crack.plate, whole=True)
+        return planned_growth(states[-len(cycle) :], crack.how, not cycle, progress)
+
     def margins(self, progress: Callable[[float, float], None] | None = None) -> list[SectionMargin]:
         """The margins of yield and ultimate strength of plates and pins at every contact over all states.
 
@@ -250,6 +309,23 @@ def check_fatigue(joint: Joint, how: FatigueAssessment, loads: np.ndarray) -> No
         raise InputError("fatigue", "needs a turning point: the history has one corner only")
     if how.over == "cycle" and not _cycle_length(loads):
         raise InputError("over", "the history has no cycles: repeat = 2 in [joint] repeats its corners")
+
+
+def check_crack(joint: Joint, crack: SectionCrack, corners: int) -> None:
+    """Check that a crack can be followed in a joint under a history with so many corners.
+
+    Raises
+    ------
+    InputError
+        If the plate is infinite, the crack leaves it, or is in a pin, there is no law of growth, or one corner only.
+    """
+    lug, _ = joint.lug(crack.pin, crack.plate)
+    nothing = np.zeros((2 + 4 * LEAST_ORDER,) * 2)  # the outline is what counts
+    body = Compliance(lug.nu, lug.plane, lug.hole_radius, nothing, outline=json.dumps(lug.document()))
+    problem = joint.problem(*joint.sections[joint.place(crack.pin, crack.plate)])
+    crack_model.check_crack(replace(problem, plate_body=body), crack.how)
+    if corners < 2:
+        raise InputError("crack", "needs a turning point: the history has one corner only")
 
 
 def _cycle_length(loads: np.ndarray) -> int:

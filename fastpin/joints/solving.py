@@ -161,15 +161,15 @@ def _plate_compliance(
     joint: Joint, plate: JointPlate, harmonics: int | None, report: Callable[[float], None]
 ) -> HolesCompliance:
     """The compliance of the pinned holes of a plate. That of an outline takes seconds, and is kept for equal plates."""
-    centres, radius = [pin.at for pin, of in joint.sections if of is plate], joint.radius
+    pins, radius = [pin for pin, of in joint.sections if of is plate], joint.radius
     report(0.0)
     if plate.is_infinite:
-        places, kolosov = np.array(centres) / radius, plate.material.kolosov(joint.plane)
+        places, kolosov = np.array([pin.at for pin in pins]) / radius, plate.material.kolosov(joint.plane)
         return holes_in_infinite_plate(kolosov, places, harmonics or harmonics_needed(places))
-    key = replace(plate, name="plate", thickness=1.0), tuple(centres), radius, joint.plane, harmonics
+    key = replace(plate, name="plate", thickness=1.0), tuple(pin.at for pin in pins), radius, joint.plane, harmonics
     if key in _KEPT:
         return _KEPT[key]
-    lug, pinned = plate.lug(centres, radius, joint.plane)
+    lug, pinned = joint.lug(pins[0].name, plate.name)
     order, found = harmonics or FIRST_TRIED, None
     while found is None:
         found = holes_in_outline(lug, pinned, order, lambda done: report(0.0))

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from fastpin.bodies.compliance import Compliance, complex_coefficients
+from fastpin.bodies.compliance import COLUMNS
 from fastpin.errors import InputError
+from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import Joint
 from fastpin.joints.result import JointState
 from fastpin.joints.system import CENTRING, PinsSystem
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.lugs.several_holes import HolesCompliance
-from fastpin.model.checks import set_fields
 from fastpin.model.loads import LOADS
 from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, contact_residuals
 from fastpin.solver.errors import ConvergenceError
@@ -25,41 +23,6 @@ from fastpin.states.state import State
 
 ROUNDED = 1e-13
 """Entries of the compliance of a hole below this are rounding: those of a hole far from any other."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class HoleInPlate(Compliance):
-    """A hole of a plate as a plate body, in one state of a joint: what the other pins and the loads do to it is given.
-
-    Parameters
-    ----------
-    incoming : ndarray, shape (2 + 4 K,)
-        Displacement G v/R of the hole's edge, Pa, by the pins in the other holes and the loads of the plate.
-    """
-
-    incoming: np.ndarray = field(default_factory=lambda: np.zeros(0))
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        incoming = np.array(self.incoming, dtype=float)
-        incoming.setflags(write=False)
-        set_fields(self, incoming=incoming)
-
-    def __reduce__(self) -> tuple[type[HoleInPlate], tuple[Any, ...]]:
-        return type(self), (*super().__reduce__()[1], self.incoming)
-
-    @cached_property
-    def digest(self) -> str:
-        """SHA-256 of all numbers."""
-        numbers = np.r_[self.nu, self.hole_radius, self.matrix.ravel(), self.incoming]
-        return hashlib.sha256(self.plane.encode() + numbers.tobytes()).hexdigest()
-
-    @cached_property
-    def without_others(self) -> Compliance:
-        return Compliance(self.nu, self.plane, self.hole_radius, self.matrix)
-
-    def _moved_by(self, column: np.ndarray) -> np.ndarray:
-        return np.asarray(super()._moved_by(column) + complex_coefficients(self.incoming))
 
 
 class StateMaker:
@@ -140,19 +103,22 @@ class StateMaker:
         plate, problem = self._plates[section.plate], section.problem
         matrix = plate.block(section.hole, section.hole).copy()
         matrix[np.abs(matrix) < ROUNDED] = 0.0
-        incoming = np.zeros(len(matrix))
+        incoming, others, loads = np.zeros(len(matrix)), [np.zeros((0, len(matrix)))], np.zeros(len(COLUMNS))
         for other, nodes, integrals in zip(system.sections, system.nodes.parts, system.integrals, strict=True):
             if other.plate == section.plate and other.hole != section.hole:
                 coefficients = integrals @ np.concatenate([now.pressure[nodes], now.shear[nodes]])
                 incoming += plate.block(section.hole, other.hole) @ coefficients
+                others.append(coefficients[None])
         for of, name, load in system.given.columns:
             if of == section.plate:
+                loads[COLUMNS.index(name)] = now.load[len(LOADS) + load]
                 incoming += plate.column(name, section.hole) * now.load[len(LOADS) + load]
-        pair = problem.pair
+        pair, unit = problem.pair, scales.traction
         try:
             return HoleInPlate(
-                pair.plate.nu, pair.plane, problem.hole_radius, matrix, incoming=incoming * scales.traction
-            )
+                pair.plate.nu, pair.plane, problem.hole_radius, matrix, incoming=incoming * unit,
+                others=np.concatenate(others) * unit, loads=loads * unit,
+            )  # fmt: skip
         except InputError as error:
             raise InputError(
                 "harmonics", f"too few for {self._joint.plates[section.plate].name}: {error.reason}"

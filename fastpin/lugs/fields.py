@@ -8,6 +8,7 @@ over the other edges. Lengths are in hole radii.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -18,7 +19,7 @@ from fastpin.errors import InputError
 from fastpin.lugs.cauchy import EdgeField, traction_on
 from fastpin.lugs.outline import CLOSEST, Lug, distances
 from fastpin.lugs.panels import Fineness
-from fastpin.lugs.plates import boundaries, hole_compliance, respond
+from fastpin.lugs.plates import NO_PINS, boundaries, hole_compliance, respond
 
 SAME = 1e-3
 """Largest difference of a file's matrix and the one made again from its outline, in parts of the largest entry. Another
@@ -41,7 +42,7 @@ MOST_POINTS = 5_000
 
 
 class EdgeHoop(NamedTuple):
-    """The hoop stress along the edges beyond the hole: first the outline counter-clockwise, then further holes.
+    """The hoop stress along the edges beyond the holes with pins: outline counter-clockwise, then further holes.
 
     Attributes
     ----------
@@ -53,8 +54,8 @@ class EdgeHoop(NamedTuple):
         Their places along the edges, from the beginning of the outline, hole radii.
     names : list of str
         Their edges.
-    columns : ndarray, shape (m, 2 + 4 K + 4)
-        The stress for unit coefficients, as those of :func:`fastpin.bodies.compliance.state_columns`.
+    columns : ndarray, shape (m, coefficients)
+        The stress for unit coefficients, see :class:`PlateField`.
     """
 
     order: int
@@ -67,14 +68,16 @@ class EdgeHoop(NamedTuple):
 class PlateField:
     """The stress in a plate for unit coefficients of its compliance.
 
-    The coefficients are those of the traction on the hole, then the loads "sxx", "syy" and "sxy" of the plate, and the
-    free thermal strain times G: 2 + 4 K + 4.
+    The coefficients are those of the traction on the hole, then on each further hole with a pin, the loads "sxx", "syy"
+    and "sxy" of the plate, and the free thermal strain times G: the sum of all 2 + 4 K, and 4.
 
     Parameters
     ----------
     lug : Lug
     order : int
         Highest harmonic K.
+    pinned : mapping of str to int
+        Names of the further holes with a pin, in the order of ``lug.holes``, and their highest harmonics.
 
     Attributes
     ----------
@@ -92,18 +95,20 @@ class PlateField:
 
     apart = 0.25  # hole radii
 
-    def __init__(self, lug: Lug, order: int) -> None:
+    def __init__(self, lug: Lug, order: int, pinned: Mapping[str, int] = NO_PINS) -> None:
         self.order = order
-        self.kolosov, response = lug.kolosov, respond(lug, order, FINENESS, lambda done: None)
+        self.kolosov, response = lug.kolosov, respond(lug, order, FINENESS, lambda done: None, pinned)
         self.edges = edges = response.edges
         size, (moved, pulled) = 2 + 4 * order, response.whole()
         self.matrix = response.projected()[:, :size]
-        loops = boundaries(lug, order)[1:]
+        loops = boundaries(lug, order, pinned)[1:]
         singular = [loop.parts[k].start for loop in loops for k in range(len(loop.parts)) if loop.is_singular(k)]
         self.singular = np.array(singular, dtype=complex)
         self._edges = [part.scaled(1.0 / lug.hole_radius) for part in lug.edges]
-        field = EdgeField.of(edges, self.kolosov, moved, pulled).on(edges.part >= edges.of_hole)
-        self.along_edges = self._hoop(field)
+        names = np.array([part.name for part in edges.parts])
+        self._free = (edges.part >= edges.of_hole) & ~np.isin(names[edges.part], list(pinned))
+        whole = EdgeField.of(edges, self.kolosov, moved, pulled)
+        self.along_edges, field = self._hoop(whole.on(self._free)), whole.on(edges.part >= edges.of_hole)
         potential, spread = _beside_hole(order, self.kolosov, edges.z[edges.is_further])
         field.potential[:, :size] -= potential
         field.traction[:, :size] -= traction_on(potential, spread, field.along[:, None])
@@ -111,13 +116,13 @@ class PlateField:
 
     @cached_property
     def rims(self) -> tuple[np.ndarray, list[str]]:
-        """Nodes on the other edges, apart from singular places, and the names of their edges."""
+        """Nodes on other edges without a pin, apart from singular places, and the names of their edges."""
         return self._places(self.edges.rule[0])[1:]
 
     def _places(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
-        """Points at s from -1 to 1 of the other edges' panels: which are kept (panels, s), the kept ones, and names."""
+        """Points at s from -1 to 1 of panels without a pin: which are kept (panels, s), the kept ones, and names."""
         edges = self.edges
-        panels = np.flatnonzero(edges.part >= edges.of_hole)
+        panels = np.flatnonzero(self._free)
         z = edges.at(panels[:, None], s)[0]
         kept = (np.abs(z[..., None] - self.singular) > self.apart).all(axis=-1)
         kept &= edges.half[panels, None] > LEAST_PANEL
@@ -130,7 +135,7 @@ class PlateField:
         kept, z, names = self._places(s)
         values = edges.lagrange(s) @ at_nodes.reshape(len(kept), edges.points, -1)
         length = np.array([part.length for part in edges.parts])
-        starts, panels = np.cumsum(length) - length, edges.part >= edges.of_hole
+        starts, panels = np.cumsum(length) - length, self._free
         share = edges.share[panels, None] + 0.5 * edges.width[panels, None] * s
         part = edges.part[panels, None]
         along = (starts[part] + share * length[part])[kept] - starts[edges.of_hole]
@@ -177,8 +182,8 @@ def _beside_hole(order: int, kolosov: float, z: np.ndarray) -> tuple[np.ndarray,
 
 
 @lru_cache(maxsize=4)
-def plate_field(body: Compliance) -> PlateField:
-    """Return the field of a compliance that knows its outline.
+def plate_field(body: Compliance, pinned: tuple[str, ...] = ()) -> PlateField:
+    """Return the field of a compliance that knows its outline. The further holes with the names `pinned` carry pins.
 
     Raises
     ------
@@ -186,7 +191,8 @@ def plate_field(body: Compliance) -> PlateField:
         If the compliance of the outline is not that of the body.
     """
     # The compliance falls like d^-2n with the harmonic n, the stress at the nearest edge d like d^-n.
-    found, size = PlateField(lug_of(body), max(body.order, min(2 * body.order, MOST_HARMONICS))), len(body.matrix)
+    order, size = max(body.order, min(2 * body.order, MOST_HARMONICS)), len(body.matrix)
+    found = PlateField(lug_of(body), order, dict.fromkeys(pinned, body.order))
     made = found.matrix[:size, :size] - hole_compliance(body.order, found.kolosov)
     if float(np.abs(made - body.matrix).max()) > SAME * float(np.abs(body.matrix).max()):
         raise InputError("lug", "is not the plate of the matrix: make the file again with fastpin compliance")

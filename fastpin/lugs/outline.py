@@ -372,7 +372,8 @@ class Lug:
         holes = [{"name": hole.name, "centre": _pair(hole.centre), "radius": hole.radius} for hole in self.holes]
         start = {"start": _pair(self.outline[0].start), "parts": parts}
         start |= {} if self.net_section is None else {"net_section": self.net_section}
-        return {**start, "holes": holes, "supports": dict(self.supports), "loads": loads}
+        floats = {"floats": True} if self.floats else {}
+        return {**start, "holes": holes, "supports": dict(self.supports), "loads": loads, **floats}
 
     @classmethod
     def from_document(cls, content: Mapping[str, Any], nu: float, plane: Plane, hole_radius: float) -> Self:
@@ -385,8 +386,8 @@ class Lug:
                 start = parts[-1].end
             loads = tuple(PartLoad(**{**load, "parts": tuple(load["parts"])}) for load in content["loads"])
             holes = tuple(Hole(hole["name"], complex(*hole["centre"]), hole["radius"]) for hole in content["holes"])
-            width = content.get("net_section")
-            return cls(nu, plane, hole_radius, tuple(parts), content["supports"], loads, holes, net_section=width)
+            width, floats = content.get("net_section"), content.get("floats", False) is True
+            return cls(nu, plane, hole_radius, tuple(parts), content["supports"], loads, holes, floats, width)
         except InputError:
             raise
         except (KeyError, TypeError, ValueError, AttributeError):

@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +40,9 @@ when harmonics below 1e-5 are left out."""
 
 HOLE = 0.5
 """Compliance G v/R of the hole in the infinite plate under pressure."""
+
+NO_PINS: Mapping[str, int] = MappingProxyType({})
+"""No further hole has a pin."""
 
 RIGID = np.arange(1, 6)
 """Places of the rotation and of the first harmonic, which hold the motion of the hole over the supports."""
@@ -241,14 +245,15 @@ class PlateEquations:
     edges : Edges
     progress : callable
         Called with the part that is done.
-    modes : RigidModes, optional
+
+    Attributes
+    ----------
+    modes : RigidModes or None
         Of a plate that floats.
     """
 
-    def __init__(
-        self, lug: Lug, edges: Edges, progress: Callable[[float], None], modes: RigidModes | None = None
-    ) -> None:
-        self.edges = edges
+    def __init__(self, lug: Lug, edges: Edges, progress: Callable[[float], None]) -> None:
+        self.edges, self.modes = edges, _rigid_modes(lug, edges) if lug.floats else None
         held, frame = self._held, self._frame = _supports(lug, edges)
         # At 1 (nu = 0.5 in plane strain) the pressure on an outline that is held all round moves nothing, and the
         # equations have no unique solution. The matrix changes by 1e-7.
@@ -265,7 +270,7 @@ class PlateEquations:
                 matrix[:, :, 1] = turned
             size = 2 * edges.z.size
             self._of_tractions, T = both.reshape(2, size, size)
-            if modes is not None:  # the mean of the outline moves no more
+            if (modes := self.modes) is not None:  # the mean of the outline moves no more
                 T += modes.of_nodes @ np.linalg.solve(modes.gram, modes.on_outline.T)
             self._of_supports = T[:, held.reshape(-1)]
             T[:, held.reshape(-1)] = -self._of_tractions[:, held.reshape(-1)]
@@ -294,19 +299,18 @@ class PlateEquations:
 
 
 def respond(
-    lug: Lug, order: int, fineness: Fineness, progress: Callable[[float], None], pinned: Collection[str] = ()
+    lug: Lug, order: int, fineness: Fineness, progress: Callable[[float], None], pinned: Mapping[str, int] = NO_PINS
 ) -> Response:
-    """Solve the integral equations for the harmonics up to `order` on the edges with pins, and for the loads.
+    """Solve the integral equations for the harmonics up to `order` on the edge of the hole, and for the loads.
 
-    `pinned` names further holes with a pin. Their radius is that of the first hole.
+    `pinned` maps the names of further holes with a pin, in the order of ``lug.holes``, to their highest harmonics.
+    Their radius is that of the first hole.
     """
     edges = Edges(boundaries(lug, order, pinned), fineness)
     tractions, loads = _tractions(lug, edges, order, pinned)
-    modes = resultants = None
-    if lug.floats:
-        modes = _rigid_modes(lug, edges)
-        tractions, resultants = _balanced(tractions, modes)
-    equations = PlateEquations(lug, edges, lambda done: progress(0.7 * done), modes)
+    equations, resultants = PlateEquations(lug, edges, lambda done: progress(0.7 * done)), None
+    if equations.modes is not None:
+        tractions, resultants = _balanced(tractions, equations.modes)
     u, pulled = equations.solve(tractions)
     # 2G u is 2 by a unit of G times the strain
     warm, hindered = equations.solve(np.zeros((edges.z.size, 1)), -2.0 * edges.z[:, None])
@@ -360,7 +364,7 @@ def _dot(along: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return found
 
 
-def boundaries(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Boundary]:
+def boundaries(lug: Lug, order: int, pinned: Mapping[str, int] = NO_PINS) -> list[Boundary]:
     """All edges in hole radii; the first one is the edge of the pin's hole."""
 
     def marks(name: str) -> tuple[str | None, tuple[int, ...]]:
@@ -370,8 +374,11 @@ def boundaries(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Bound
         return tuple(part.scaled(1.0 / lug.hole_radius) for part in parts)
 
     # Ten nodes on 4 rad of a harmonic integrate a product of two such harmonics to 1e-12, eight nodes to 1e-8.
-    turn, count = min(Boundary.turn, 4.0 / order), len(lug.contact_edge)
-    loops = [Boundary(scaled(lug.contact_edge), ((None, ()),) * count, (True,) * count, turn)]
+    def finest(highest: int) -> float:
+        return min(Boundary.turn, 4.0 / highest)
+
+    count = len(lug.contact_edge)
+    loops = [Boundary(scaled(lug.contact_edge), ((None, ()),) * count, (True,) * count, finest(order))]
     for names, parts in [
         ([part.name for part in lug.outline], lug.outline),
         *(([hole.name] * len(hole.parts), hole.parts) for hole in lug.holes),
@@ -379,8 +386,8 @@ def boundaries(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Bound
         free = tuple(
             name not in lug.supports and not lug.floats for name in names
         )  # a floating outline balances the pins
-        finest = turn if names[0] in pinned and len(set(names)) == 1 else Boundary.turn
-        loops.append(Boundary(scaled(parts), tuple(map(marks, names)), free, finest))
+        turn = finest(pinned[names[0]]) if names[0] in pinned and len(set(names)) == 1 else Boundary.turn
+        loops.append(Boundary(scaled(parts), tuple(map(marks, names)), free, turn))
     return loops
 
 
@@ -402,26 +409,30 @@ def _supports(lug: Lug, edges: Edges) -> tuple[np.ndarray, np.ndarray]:
     return held, frame
 
 
-def _tractions(lug: Lug, edges: Edges, order: int, pinned: Collection[str]) -> tuple[np.ndarray, tuple[str, ...]]:
+def _tractions(lug: Lug, edges: Edges, order: int, pinned: Mapping[str, int]) -> tuple[np.ndarray, tuple[str, ...]]:
     """Tractions of unit harmonics on each edge with a pin, and of loads, and the names of the loads.
 
-    The tractions are complex, shape (nodes, edges with a pin x (2 + 4 K) + loads).
+    The tractions are complex, shape (nodes, sum of 2 + 4 K of all edges with a pin + loads).
     """
     loads = tuple(sorted({load.name for load in lug.loads}))
-    contacts = [(~edges.is_further, 0j)]
-    contacts += [
-        (_on_parts(lug, edges, hole.name), hole.centre / lug.hole_radius) for hole in lug.holes if hole.name in pinned
-    ]
-    each = 2 + 4 * order
-    found = np.zeros((edges.z.size, each * len(contacts) + len(loads)), dtype=complex)
-    for place, (on_hole, centre) in enumerate(contacts):
-        found[on_hole, each * place : each * place + each] = edge_basis(edges.z[on_hole] - centre, order)
+    found = [_of_harmonics(edges.z, ~edges.is_further, order)]
+    for hole in lug.holes:
+        if hole.name in pinned:
+            away = edges.z - hole.centre / lug.hole_radius
+            found.append(_of_harmonics(away, _on_parts(lug, edges, hole.name), pinned[hole.name]))
+    acting = np.zeros((edges.z.size, len(loads)), dtype=complex)
     for load in lug.loads:
         for name in load.parts:
             on = _on_parts(lug, edges, name)
-            column = each * len(contacts) + loads.index(load.name)
-            found[on, column] += complex(load.x, load.y) + load.normal * edges.normals[on]
-    return found, loads
+            acting[on, loads.index(load.name)] += complex(load.x, load.y) + load.normal * edges.normals[on]
+    return np.hstack([*found, acting]), loads
+
+
+def _of_harmonics(away: np.ndarray, on_hole: np.ndarray, order: int) -> np.ndarray:
+    """Unit harmonics at the nodes on a hole, seen from its centre; 0 at all others."""
+    found = np.zeros((away.size, 2 + 4 * order), dtype=complex)
+    found[on_hole] = edge_basis(away[on_hole], order)
+    return found
 
 
 def edge_basis(z: np.ndarray, order: int) -> np.ndarray:

@@ -62,7 +62,7 @@ def holes_in_outline(lug: Lug, pinned: Sequence[str], order: int, progress: Call
     ``progress(done)`` is called from time to time, with the part that is done.
     """
     each, count = 2 + 4 * order, 1 + len(pinned)
-    response = respond(lug, order, FINE, progress, pinned)
+    response = respond(lug, order, FINE, progress, dict.fromkeys(pinned, order))
     whole = response.projected()
     square = whole[:, : each * count]
     matrix = 0.5 * (square + square.T) - np.kron(np.eye(count), hole_compliance(order, lug.kolosov))

@@ -94,7 +94,9 @@ def outline_hoop(
         raise InputError("plate_body", "has no outline that is elastic: no other edge than that of the hole is known")
     body, radius = problem.plate_body, problem.hole_radius
     edges = body.along_edges
-    column = state_columns(problem.joint.hole, edges.order, grid, np.hstack([pressure, shear]), loads)
+    column = body.lug.with_others(
+        state_columns(problem.joint.hole, edges.order, grid, np.hstack([pressure, shear]), loads)
+    )
     x, y = (np.where(np.abs(part) < 1e-12, 0.0, radius * part) for part in (edges.z.real, edges.z.imag))
     polylines = body.lug.geometry.polylines
     return OutlineHoop(x, y, radius * edges.along, edges.names, polylines, column @ edges.columns.T)

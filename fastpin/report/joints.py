@@ -9,13 +9,24 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fastpin.assess import fatigue, margins, outputs
+from fastpin.assess import crack, fatigue, margins, outputs
 from fastpin.assess.outputs import NUMBER, TEXT, WHOLE, Column, Output, list_of, map_of, schema_of, table
+from fastpin.cracks import Growth
 from fastpin.damage.criteria import criterion_title
 from fastpin.errors import InputError
-from fastpin.joints import Joint, JointPin, JointPlate, JointResult, JointState, SectionDamage, SectionMargin
+from fastpin.joints import (
+    Joint,
+    JointPin,
+    JointPlate,
+    JointResult,
+    JointState,
+    SectionCrack,
+    SectionDamage,
+    SectionMargin,
+)
 from fastpin.model import angles, ties
 from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.doubts import doubts_given
 from fastpin.model.points import owner_of, point_words
 from fastpin.model.units import Unit, units, units_of
 from fastpin.states.margins import over_yield, over_yield_words, smallest_margin
@@ -30,7 +41,7 @@ UNRESOLVED = " (not resolved)"
 
 
 class Judged(NamedTuple):
-    """The result of a joint, the margins of its strengths, and its fatigue.
+    """The result of a joint, the margins of its strengths, its fatigue, and its crack.
 
     Attributes
     ----------
@@ -41,13 +52,18 @@ class Judged(NamedTuple):
         Empty unless the fatigue is assessed.
     reason : str
         Why the fatigue is not known; empty if it is, or if nobody asked for it.
+    crack : SectionCrack or None
+    growth : Growth or str
+        That of the crack, or why it is not known; empty if nobody asked for it.
     """
 
     result: JointResult
     margins: list[SectionMargin]
     how: FatigueAssessment | None
     damages: list[SectionDamage]
-    reason: str = ""
+    reason: str
+    crack: SectionCrack | None
+    growth: Growth | str
 
     @property
     def over(self) -> dict[tuple[str, str], dict[str, float]]:
@@ -63,17 +79,24 @@ def judged(
     how: FatigueAssessment | None = None,
     is_complete: bool = True,
     progress: outputs.Follow | None = None,
+    crack: SectionCrack | None = None,
 ) -> Judged:
-    """Find the margins of the strengths of a result, and its fatigue if `how` says how and the history is complete."""
-    known = result.margins(fatigue.half(progress, 0.0))
-    if how is None:
-        return Judged(result, known, None, [])
-    if not is_complete:
-        return Judged(result, known, how, [], "the history has not come to its end")
-    try:
-        return Judged(result, known, how, result.assessed_fatigue(how, fatigue.half(progress, 0.5)))
-    except InputError as error:
-        return Judged(result, known, how, [], str(error))
+    """Find the margins of the strengths of a result; if the history is complete its fatigue and crack, if asked for."""
+    known = result.margins(fatigue.stretch(progress, 0.0, 0.4))
+    unknown = "" if is_complete else "the history has not come to its end"
+    found = Judged(result, known, how, [], unknown, crack, unknown)
+    if how is not None and is_complete:
+        try:
+            found = found._replace(damages=result.assessed_fatigue(how, fatigue.stretch(progress, 0.4, 0.8)))
+        except InputError as error:
+            found = found._replace(reason=str(error))
+    if crack is not None and is_complete:
+        try:
+            with doubts_given():
+                found = found._replace(growth=result.crack_growth(crack, fatigue.stretch(progress, 0.8, 1.0)))
+        except InputError as error:
+            found = found._replace(growth=str(error))
+    return found
 
 
 def describe(judged: Judged) -> str:
@@ -93,7 +116,7 @@ def describe(judged: Judged) -> str:
     if not len(result):
         return "\n".join(head)
     parts = [*head, "", forces_table(result), "", largest_table(result)]
-    return "\n".join([*parts, *margin_lines(judged), *fatigue_lines(judged)])
+    return "\n".join([*parts, *margin_lines(judged), *fatigue_lines(judged), *crack_lines(judged)])
 
 
 def forces_table(result: JointResult) -> str:
@@ -177,6 +200,17 @@ def fatigue_lines(judged: Judged) -> list[str]:
         cells.append((name, f"life {spot.life:.4g} {how.passes}{median}", f"damage {spot.damage:.4g}", where + mark))
     head = f"fatigue over {fatigue.assessment_words(how)}, with the stresses at the load points:"
     return ["", head, *outputs.aligned(cells, "lrrl"), *_left_out(len(judged.damages), "longer lives")]
+
+
+def crack_lines(judged: Judged) -> list[str]:
+    """Return what becomes of the crack as lines of text; no line unless it was asked for."""
+    if judged.crack is None:
+        return []
+    at = f"{judged.crack.pin} in {judged.crack.plate}"
+    if not isinstance(judged.growth, Growth):
+        return ["", f"{at}, crack: not known, {judged.growth}"]
+    over = judged.over.get((judged.crack.pin, judged.crack.plate))
+    return ["", f"{at}, {crack.growth_line(judged.growth, over)}"]
 
 
 def _left_out(count: int, words: str) -> list[str]:
@@ -372,6 +406,22 @@ JOINT = (
             Output("how", of=lambda judged: judged.how, parts=fatigue.HOW),
             Output("error", "text", lambda judged: judged.reason or None, optional=True),
             Output("bodies", of=_bodies, form=list_of(schema_of(BODY))),
+        ),
+    ),
+    Output(
+        "crack", of=lambda judged: None if judged.crack is None else judged, optional=True,
+        parts=(
+            Output("pin", "text", lambda judged: judged.crack.pin),
+            Output("plate", "text", lambda judged: judged.crack.plate),
+            Output(
+                "error", "text", lambda judged: None if isinstance(judged.growth, Growth) else judged.growth,
+                optional=True,
+            ),
+            Output(
+                "growth", of=lambda judged: judged.growth if isinstance(judged.growth, Growth) else None,
+                words="as fastpin crack --json gives it; places count from the centre of the hole", optional=True,
+                parts=crack.DOCUMENT,
+            ),
         ),
     ),
     Output("states", "list", lambda judged: judged.result.states, parts=JOINT_STATE),

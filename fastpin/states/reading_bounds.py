@@ -99,8 +99,8 @@ class Bounds:
         self._friction, self._coupled = problem.friction_at(grid.theta), not _coupling(problem, grid).is_smooth
         self._found: dict[str, list[Pair]] = {name: [] for name in self._names}
         # What other pins of a joint do to the hole differs from state to state: its stresses have no bounds.
-        is_alone = problem.plate_body.without_others is problem.plate_body
-        self._stresses = StressBounds(problem, grid, names if is_alone else set())
+        self._is_alone = problem.plate_body.without_others is problem.plate_body
+        self._stresses = StressBounds(problem, grid, names if self._is_alone else set())
         self._waiting: list[tuple[list[Nodal], np.ndarray]] = []  # until so many states make the matrices worth while
         self._count = 0
 
@@ -118,8 +118,9 @@ class Bounds:
             "peak_shear": lambda: shear_bounds(shear, most * peaks[1], self._coupled),
             "contact_width": lambda: width_bounds(self._grid, status != OPEN),
             "stick_width": lambda: width_bounds(self._grid, sticks),
-            "peak_hoop_outline": lambda: outline_bounds(self._problem, self._grid, block, rows),
         }
+        if self._is_alone:
+            known["peak_hoop_outline"] = lambda: outline_bounds(self._problem, self._grid, block, rows)
         for name in self._names - self._stresses.names:
             self._found[name].append(known[name]() if name in known else _unbounded(len(rows)))
         if self._stresses.names:

@@ -297,7 +297,7 @@ def test_half_of_a_plate_with_two_pins_between_sliding_edges():
     half = plate((-2.5, 3.0), (-3.0, 5.0), supports={**sides, "left": "normal"}, holes=bolt[:1], loads=(
         PartLoad("syy", ("upper",), normal=1.0),))  # fmt: skip
     whole = plate((-8.0, 3.0), (-3.0, 5.0), supports={**sides, "left": "normal"}, holes=(hole, *bolt), loads=load)
-    one, both = respond(half, 6, plates.FINE, nothing), respond(whole, 6, plates.FINE, nothing, ["other"])
+    one, both = respond(half, 6, plates.FINE, nothing), respond(whole, 6, plates.FINE, nothing, {"other": 6})
     each, upwards = 26, [3, 4]  # r sin and theta cos: the mirror leaves them
     expected = both.projected()[:each][:, upwards] + both.projected()[:each][:, [each + k for k in upwards]]
     assert one.edges.z.size < 0.65 * both.edges.z.size

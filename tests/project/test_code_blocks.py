@@ -29,6 +29,7 @@ from fastpin.casefile.lug import LUG_KEYS
 from fastpin.casefile.materials import FILE_KEYS
 from fastpin.casefile.reader import KEYS, ROOT_KEYS
 from fastpin.cli.options import join_words, parser
+from fastpin.joints.read import JOINT_KEYS
 from fastpin.lugs import plate_compliance
 from fastpin.studies import parse_plan, sweep
 from fastpin.studies.tolerances import KEYS as TOLERANCE_KEYS
@@ -183,7 +184,9 @@ def test_toml_has_known_keys(page: Path) -> None:
     for text in texts(page, "toml"):
         table = tomllib.loads(text)
         materials = dict.fromkeys(table, FILE_KEYS)
-        assert any(has_known_keys(table, sections) for sections in (case, plan, tolerances, LUG_KEYS, materials)), text
+        assert any(
+            has_known_keys(table, sections) for sections in (case, plan, tolerances, LUG_KEYS, JOINT_KEYS, materials)
+        ), text
         if "grid" in table:
             for section in table["grid"]:
                 assert section in KEYS, section

@@ -19,7 +19,7 @@ class FreeOutline:
         hole, rim = plates.boundaries(lug, 8)
         beside = tuple((part, 0.4) for part in Hole("", 0j, 1.0).parts)
         edges = Edges([hole, images.replace(rim, beside=beside)], images.FINENESS)
-        self.equations = plates.PlateEquations(lug, edges, lambda done: None, plates._rigid_modes(lug, edges))
+        self.equations = plates.PlateEquations(lug, edges, lambda done: None)
 
     def ligament(self, mouth: float, angle: float) -> float:
         side = np.cos(angle)
