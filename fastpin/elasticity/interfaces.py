@@ -44,14 +44,17 @@ class Nodes:
     Attributes
     ----------
     grids : tuple of Grid
+    further : int
+        Nodes behind those of the grids, such as sides of faying surfaces.
     """
 
     grids: tuple[Grid, ...]
+    further: int = 0
 
     @cached_property
     def size(self) -> int:
         """Number of nodes."""
-        return sum(grid.size for grid in self.grids)
+        return sum(grid.size for grid in self.grids) + self.further
 
     @cached_property
     def parts(self) -> tuple[slice, ...]:

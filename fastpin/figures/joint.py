@@ -49,14 +49,16 @@ plot_joint = plotter("plot_joint", joint_of)
 
 
 def shares_of(result: JointResult) -> Plot:
-    """Draw the force of each pin on its first plate over the load points."""
+    """Draw the force of each pin on its first plate over the load points, and the friction of its faying surfaces."""
     instance("result", result, JointResult, "a JointResult")
     if not len(result):
         raise InputError("result", "has no state")
     return Plot(
         lambda look: _draw_shares(look, result),
         instead=f"Line chart of the forces of {len(result.joint.pins)} pins over {len(result)} load points.",
-        caption="Force of each pin on its first plate.",
+        caption="Force of each pin on its first plate, and friction of the faying surfaces, in size."
+        if result.joint.faying
+        else "Force of each pin on its first plate.",
     )
 
 
@@ -164,6 +166,10 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
         pin.name: [float(np.hypot(*state.forces[joint.place(pin.name, pin.plates[0])])) for state in result]
         for pin in joint.pins
     }
+    forces |= {
+        f"friction {surface}": [float(np.hypot(*state.faying[k].force)) for state in result]
+        for k, surface in enumerate(joint.faying)
+    }
     factor, unit = joint_units(joint)["force"].scale([max(values) for values in forces.values()])
     few = len(points) <= 60
     for k, (_, values) in enumerate(forces.items()):
@@ -171,7 +177,7 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
         panel.plot(points, factor * np.array(values), marker="o" if few else "", markersize=3.5, **style)
     draw_grid(panel)
     panel.set_xlabel("load point")
-    panel.set_ylabel(quantity("force of the pin", unit))
+    panel.set_ylabel(quantity("force" if joint.faying else "force of the pin", unit))
     panel.set_ylim(bottom=0.0)
     if few and len(points) < 12:
         panel.set_xticks(points)

@@ -1,3 +1,5 @@
+from .parts import Clamp as Clamp
+from .parts import Faying as Faying
 from .parts import Joint as Joint
 from .parts import JointPin as JointPin
 from .parts import JointPlate as JointPlate
@@ -6,6 +8,7 @@ from .read import JOINT_EXAMPLE as JOINT_EXAMPLE
 from .read import JointFile as JointFile
 from .read import parse_joint as parse_joint
 from .read import read_joint as read_joint
+from .result import FayingState as FayingState
 from .result import JointResult as JointResult
 from .result import JointState as JointState
 from .result import SectionCrack as SectionCrack

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from fastpin.bodies.compliance import Compliance, complex_coefficients
+from fastpin.bodies.body import Harmonics, Remote, Rim
+from fastpin.bodies.compliance import Compliance, complex_coefficients, translation_rows
+from fastpin.bodies.walls import PlateWalls
 from fastpin.model.checks import set_fields
 
 
@@ -20,34 +23,40 @@ class HoleInPlate(Compliance):
     Parameters
     ----------
     incoming : ndarray, shape (2 + 4 K,)
-        Displacement G v/R of the hole's edge, Pa, by the pins in the other holes and the loads of the plate.
+        Displacement G v/R of the hole's edge, Pa, by the pins in the other holes, the loads of the plate, and all
+        friction of faying surfaces.
     others : ndarray, shape (holes, 2 + 4 K)
         Coefficients of the tractions on the other holes with a pin, Pa.
     loads : ndarray, shape (3,)
         The loads sxx, syy and sxy of the plate, Pa.
     pinned : tuple of str
         Names of the other holes in the outline, if that is known.
+    rubbed : ndarray, shape (2 + 4 K,)
+        Coefficients of the uniform traction by friction of faying surfaces on this hole, Pa.
     """
 
     incoming: np.ndarray = field(default_factory=lambda: np.zeros(0))
     others: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     loads: np.ndarray = field(default_factory=lambda: np.zeros(3))
     pinned: tuple[str, ...] = ()
+    rubbed: np.ndarray = field(default_factory=lambda: np.zeros(2))
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name in ("incoming", "others", "loads"):
+        for name in ("incoming", "others", "loads", "rubbed"):
             given = np.array(getattr(self, name), dtype=float)
             given.setflags(write=False)
             set_fields(self, **{name: given})
 
     def __reduce__(self) -> tuple[type[HoleInPlate], tuple[Any, ...]]:
-        return type(self), (*super().__reduce__()[1], self.incoming, self.others, self.loads, self.pinned)
+        own = self.incoming, self.others, self.loads, self.pinned, self.rubbed
+        return type(self), (*super().__reduce__()[1], *own)
 
     @cached_property
     def digest(self) -> str:
         """SHA-256 of all numbers."""
-        numbers = np.r_[self.nu, self.hole_radius, self.matrix.ravel(), self.incoming, self.others.ravel(), self.loads]
+        acting = self.incoming, self.others.ravel(), self.loads, self.rubbed
+        numbers = np.r_[self.nu, self.hole_radius, self.matrix.ravel(), *acting]
         return hashlib.sha256((self.plane + self.outline).encode() + numbers.tobytes()).hexdigest()
 
     @cached_property
@@ -67,9 +76,27 @@ class HoleInPlate(Compliance):
         return self._lugs.plate_field(self.without_others, self.pinned)
 
     def with_others(self, columns: np.ndarray) -> np.ndarray:
-        own, acting = np.split(columns, [-self.loads.size - 1], axis=-1)  # the last one is the temperature
+        own, acting = np.split(columns.copy(), [-self.loads.size - 1], axis=-1)  # the last one is the temperature
+        own[..., : self.rubbed.size] += self.rubbed
         others = np.broadcast_to(self.others.ravel(), (*columns.shape[:-1], self.others.size))
         return np.concatenate([own, others, acting + np.r_[self.loads, 0.0]], axis=-1)
 
     def _moved_by(self, column: np.ndarray) -> np.ndarray:
         return np.asarray(super()._moved_by(column) + complex_coefficients(self.incoming))
+
+    @property
+    def _rubbed_by(self) -> complex:
+        """The uniform traction x + iy of the faying surfaces on the hole, Pa."""
+        x, y = math.sqrt(0.5) * (translation_rows(self.rubbed.size) @ self.rubbed)
+        return complex(x, y)
+
+    def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
+        """The smooth field, with that of friction on this hole in an infinite plate: a first harmonic, (T42)."""
+        found, log = super().walls(rim, tractions, remote), np.conj(self._rubbed_by) / (1.0 + rim.kolosov)
+        found.surface.growing[2, 1] += rim.kolosov * log / found.surface.largest
+        found.surface.decaying[:, 1] += np.conj(log) * np.array([-1.0, 1.0, -2.0])
+        return found
+
+    def add_edge_hoop(self, hoop: np.ndarray, rim: Rim, tractions: Harmonics, remote: Remote, at: np.ndarray) -> None:
+        super().add_edge_hoop(hoop, rim, tractions, remote, at)
+        hoop += (1.0 - 4.0 / (1.0 + rim.kolosov)) * np.real(self._rubbed_by * np.exp(-1j * at))

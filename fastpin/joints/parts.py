@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations
+from typing import NamedTuple
 
 from fastpin.errors import InputError
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad
@@ -141,6 +142,41 @@ class JointPlate:
 
 
 @dataclass(frozen=True)
+class Clamp:
+    """The clamp-up of a pin: friction between its plates carries load beside the contact of the pin.
+
+    Every pair of neighbouring plates of the pin has a faying surface round the hole. It carries at most friction times
+    force, in any direction.
+
+    Parameters
+    ----------
+    force : float
+        Clamp force, N. It does not change with the load.
+    friction : float
+        Coefficient of friction of the faying surfaces.
+    flexibility : float
+        Displacement of one plate over the next per force of friction, m/N, before the surface slips.
+
+    Raises
+    ------
+    InputError
+        If a value is negative or no number. The error names the field.
+    """
+
+    force: float
+    friction: float
+    flexibility: float = 0.0
+
+    def __post_init__(self) -> None:
+        checks.check_fields(self, checks.not_negative, "force friction flexibility")
+
+    @property
+    def limit(self) -> float:
+        """The largest force of friction at one faying surface, N."""
+        return self.friction * self.force
+
+
+@dataclass(frozen=True)
 class JointPin:
     """A pin of a joint, through one plate or several.
 
@@ -161,6 +197,8 @@ class JointPin:
     flexibility : float
         Displacement of the pin in one plate over that in the next, per force between them, m/N: shear and bending of
         the pin. 0 is a rigid pin. :func:`tate_rosenfeld` has a handbook formula.
+    clamp : Clamp, optional
+        The clamp-up of its plates.
 
     Raises
     ------
@@ -176,6 +214,7 @@ class JointPin:
     clearance: float | Mapping[str, float] = 0.0
     friction: float | Mapping[str, float] = 0.0
     flexibility: float = 0.0
+    clamp: Clamp | None = None
 
     def __post_init__(self) -> None:
         checks.check_fields(self, _name, "name")
@@ -189,6 +228,10 @@ class JointPin:
         if len(set(self.plates)) < len(self.plates):
             raise InputError("plates", f"pin {self.name} goes through a plate twice")
         checks.check_fields(self, checks.not_negative, "flexibility")
+        if self.clamp is not None:
+            checks.instance("clamp", self.clamp, Clamp, "a Clamp")
+            if len(self.plates) == 1:
+                raise InputError("clamp", f"pin {self.name} goes through one plate: it clamps no two plates together")
         for name in ("clearance", "friction"):
             value = getattr(self, name)
             if isinstance(value, Mapping):
@@ -206,6 +249,18 @@ class JointPin:
         checks.known_name("plate", plate, self.plates)
         value = getattr(self, checks.choice("name", name, ("clearance", "friction")))
         return float(value[plate] if isinstance(value, Mapping) else value)
+
+
+class Faying(NamedTuple):
+    """Two plates that a pin clamps: the names of the pin and of both plates, in their order."""
+
+    pin: str
+    clamp: Clamp
+    plate: str
+    other: str
+
+    def __str__(self) -> str:
+        return f"{self.pin} {self.plate}-{self.other}"
 
 
 @dataclass(frozen=True)
@@ -265,7 +320,7 @@ class Joint:
         if plate.floats and len(through) < 2:
             raise InputError("moves", f"the plate {plate.name} is free and has one pin: nothing keeps it from turning")
         least = 2.0 * LEAST_PITCH * self.radius
-        for one, other in combinations(through, 2):
+        for one, other in itertools.combinations(through, 2):
             apart = abs(one.at - other.at)
             if checks.is_above(least, apart):
                 words = f"the holes of {one.name} and {other.name} in {plate.name} are {apart:.4g} m apart"
@@ -283,6 +338,12 @@ class Joint:
         """Every pin in each of its plates: the interfaces, pin by pin."""
         by_name = {plate.name: plate for plate in self.plates}
         return tuple((pin, by_name[name]) for pin in self.pins for name in pin.plates)
+
+    @cached_property
+    def faying(self) -> tuple[Faying, ...]:
+        """The faying surfaces that carry friction, pin by pin."""
+        clamps = ((pin, pin.clamp) for pin in self.pins if pin.clamp is not None and pin.clamp.limit)
+        return tuple(Faying(pin.name, clamp, *pair) for pin, clamp in clamps for pair in itertools.pairwise(pin.plates))
 
     def place(self, pin: str, plate: str) -> int:
         """The place of a pin in a plate among the sections. Unknown names raise :class:`InputError`."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from fastpin.joints.system import PinsSystem
 from fastpin.kernels import exchange
-from fastpin.kernels.status import OPEN
+from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.configuration import Configuration, resting_status
 from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.solver.increment import accepted, implicit_step
@@ -38,9 +38,10 @@ def unloaded(system: PinsSystem) -> Configuration:
     """The joint before any load and fit: all pins concentric, open or without pressure."""
     n, zeros, load = system.grid.size, np.zeros(system.grid.size), np.zeros(system.loads.shape[1])
     load[-1] = 1.0
-    gap = np.maximum(system.initial_gap, 0.0)
+    gap, clamped = np.maximum(system.initial_gap, 0.0), np.arange(n) >= system.nodes.parts[-1].stop
     return Configuration(
-        pressure=zeros.copy(), shear=zeros.copy(), gap=gap, slip=zeros.copy(), status=np.full(n, OPEN, dtype=np.int8),
+        pressure=1.0 * clamped, shear=zeros.copy(), gap=gap, slip=zeros.copy(),
+        status=np.where(clamped, STICK, OPEN).astype(np.int8),
         motion=np.zeros(system.motions), load=load, origin=np.zeros(2), rest=np.zeros(system.motions),
         rest_gap=gap.copy(), rest_slip=zeros.copy(), slip_tally=SlipTally.empty(n),
     )  # fmt: skip
@@ -64,8 +65,8 @@ def follow(
         If the load can't be carried, or no state was found. ``fraction`` says where.
     """
     before, done, snaps = start.load, 0.0, 0
-    now = start
-    if not now.closed.any() and np.any((now.gap == 0.0) & (system.friction > 0.0)):
+    now, pins = start, slice(system.nodes.parts[-1].stop)
+    if not now.closed[pins].any() and np.any((now.gap[pins] == 0.0) & (system.friction[pins] > 0.0)):
         now, done = _first_of_neat(system, now, load)
     while done < 1.0:
         begin, step = done, None
@@ -97,11 +98,12 @@ def _error(lost: StepLostError, done: float) -> SolveError:
 def _first_of_neat(system: PinsSystem, start: Configuration, load: np.ndarray) -> tuple[Configuration, float]:
     """The first contact of neat pins. All grows in proportion, so that one implicit increment is exact.
 
-    It begins with all nodes without a gap sticking. Where other pins are loose, only a small part of the step is taken.
+    It begins with all nodes without a gap sticking. Where other pins are loose, or plates are clamped, only a small
+    part of the step is taken.
     """
     neat = start.gap == 0.0
     begun = replace(start, status=np.where(neat, resting_status(system), OPEN).astype(np.int8))
-    for part in (1.0, 1e-1, 1e-2, 1e-3, 1e-4) if neat.all() else (1e-4, 1e-5, 1e-6):
+    for part in (1.0, 1e-1, 1e-2, 1e-3, 1e-4) if neat.all() and not system.faying else (1e-4, 1e-5, 1e-6):
         found = implicit_step(system, begun, start.load + part * (load - start.load))
         if (after := accepted(system, start, found)) is not None:
             return after, part

@@ -15,13 +15,23 @@ from fastpin.casefile.lug import limits_of, point_of
 from fastpin.casefile.materials import read_material
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
 from fastpin.errors import InputError
-from fastpin.joints.parts import REMOTE_NAMES, Joint, JointPin, JointPlate, tate_rosenfeld
+from fastpin.joints.parts import REMOTE_NAMES, Clamp, Joint, JointPin, JointPlate, tate_rosenfeld
 from fastpin.joints.result import SectionCrack, check_crack, check_fatigue
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
 from fastpin.lugs.outline import Part, rectangle
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import BESIDE
-from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
+from fastpin.model.checks import (
+    any_text,
+    as_toml,
+    choice,
+    file_path,
+    number,
+    positive,
+    string,
+    unknown_key,
+    whole_number,
+)
 from fastpin.model.keys import ANY, CASE, ITSELF, MATERIAL, of
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
 
@@ -31,7 +41,7 @@ JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8
 JOINT_KEYS: dict[str, tuple[str, ...]] = {
     "joint": ("plane", "nodes", "harmonics", "repeat"),
     "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves"),
-    "pin": ("name", "at", *MATERIAL_KEYS, "diameter", "plates", "clearance", "friction", "flexibility"),
+    "pin": ("name", "at", *MATERIAL_KEYS, "diameter", "plates", "clearance", "friction", "flexibility", "clamp"),
     "load": (),
     "fatigue": BESIDE["fatigue"].keys,
     "crack": ("pin", "plate", *(key for key in BESIDE["crack"].keys if key not in ("body", "place"))),
@@ -42,7 +52,8 @@ _KINDS: dict[str, Any] = {
     "plate": MATERIAL | of("length", "thickness", "x", "y", "start") | {"parts": of("length", "to", "through")},
     "pin": MATERIAL
     | of("length", "at", "diameter")
-    | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility"},
+    | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility"}
+    | {"clamp": {"force": "force", "flexibility": "flexibility"}},
     "fatigue": CASE["fatigue"],
     "crack": CASE["crack"],
 }
@@ -226,7 +237,11 @@ def _pins(source: CaseText, block: Section, plates: list[JointPlate | None]) -> 
     flexibility = _flexibility(block, material, diameter, through, plates)
     if flexibility is None:
         return [None]
+    clamp = block.checked("clamp", _clamp)
+    if clamp is None and "clamp" in block:
+        return [None]
     common = {"material": material, "radius": 0.5 * diameter, "plates": through, "flexibility": flexibility}
+    common["clamp"] = clamp
     for key in ("clearance", "friction"):
         common[key] = block.value(key) if key in block else 0.0
     return [_made(block, JointPin, name=name, at=at, **common) for name, at in zip(names, places, strict=True)]
@@ -253,6 +268,21 @@ def _flexibility(
         block.report("flexibility: the formula gives several values for plates of unlike thickness; give a number, m/N")
         return None
     return values.pop()
+
+
+def _clamp(field: str, value: object) -> Clamp:
+    """A clamp-up { force, friction, flexibility }."""
+    keys = "force", "friction", "flexibility"
+    if not isinstance(value, dict):
+        raise InputError(field, f"must be a table {{ {', '.join(keys)} }}, not {as_toml(value)}")
+    for key in (key for key in value if key not in keys):
+        raise InputError(field, unknown_key(key, keys))
+    for key in (key for key in keys[:2] if key not in value):
+        raise InputError(field, f"{key} is missing")
+    try:
+        return Clamp(**value)
+    except InputError as error:
+        raise InputError(f"{field}.{error.field}", error.reason) from None
 
 
 def _names(field: str, value: object) -> list[str]:

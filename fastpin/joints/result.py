@@ -52,6 +52,24 @@ class SectionMargin(NamedTuple):
     margin: Margin
 
 
+class FayingState(NamedTuple):
+    """The friction between two plates that a pin clamps, at one corner.
+
+    Attributes
+    ----------
+    force : ndarray, shape (2,)
+        Force of friction on the first plate along x and y, N.
+    slip : ndarray, shape (2,)
+        Slip of the next plate over the first one along x and y, m.
+    dissipation : float
+        Energy that friction has dissipated since the start, J.
+    """
+
+    force: np.ndarray
+    slip: np.ndarray
+    dissipation: float
+
+
 @dataclass(frozen=True, eq=False)
 class JointState:
     """The state of a joint at one corner.
@@ -75,6 +93,8 @@ class JointState:
     residuals : dict of str to float
         Largest violations of the contact conditions and of the equilibrium of every pin and plate, relative, recomputed
         from the matrices.
+    faying : tuple of FayingState
+        The faying surfaces of clamped plates, in the order of ``joint.faying``.
     """
 
     joint: Joint
@@ -84,6 +104,7 @@ class JointState:
     forces: np.ndarray
     moved: np.ndarray
     residuals: dict[str, float]
+    faying: tuple[FayingState, ...] = ()
 
     def __getitem__(self, names: tuple[str, str]) -> State:
         """The contact of a pin in a plate, by both names: ``state["A", "skin"]``."""
@@ -102,7 +123,8 @@ class JointState:
     def shares(self, plate: str) -> dict[str, float]:
         """The part of the force that the plate takes from each pin, by name, along the sum of these forces.
 
-        NaN where the pins do not load the plate together. An unknown plate raises :class:`InputError`.
+        NaN where the pins do not load the plate together. Friction of faying surfaces does not count. An unknown plate
+        raises :class:`InputError`.
         """
         known_name("plate", plate, [each.name for each in self.joint.plates])
         found = {

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.joints.faying import FayingSurface
 from fastpin.joints.parts import MOVES, Joint, JointPlate
 from fastpin.joints.path import follow, unloaded
 from fastpin.joints.result import JointResult, JointState
@@ -232,5 +233,11 @@ def _joint_system(
         else:
             on_plates[moving.index(Motion(places[part], 1.0 + 0j if what == "x" else 1j)), place] = 1.0
     given = JointLoads(on_pins, moving, on_plates, columns, np.minimum(clearances, 0.0) / radius)
-    system = build(sections, plates, given, [Grid.circle(nodes, BOTTOM)] * len(sections), force)
+    faying = []
+    for pin_name, clamp, *pair in joint.faying:
+        one, other = (joint.place(pin_name, plate) for plate in pair)
+        play = sum(max(clearances[end], 0.0) for end in (one, other)) / (force * beta)
+        limit, soft = clamp.limit / (force * thick), clamp.flexibility * thick / beta
+        faying.append(FayingSurface((one, other), limit, soft, float(play)))
+    system = build(sections, plates, given, [Grid.circle(nodes, BOTTOM)] * len(sections), force, faying)
     return system, np.where(stresses, force / radius, force * thick)

@@ -10,9 +10,10 @@ import numpy as np
 
 from fastpin.bodies.compliance import COLUMNS
 from fastpin.errors import InputError
+from fastpin.joints.faying import NORMALS, rim_basis
 from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import Joint
-from fastpin.joints.result import JointState
+from fastpin.joints.result import FayingState, JointState
 from fastpin.joints.system import CENTRING, PinsSystem
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.lugs.several_holes import HolesCompliance
@@ -38,6 +39,7 @@ class StateMaker:
     def __init__(self, joint: Joint, system: PinsSystem, plates: list[HolesCompliance]) -> None:
         self._joint, self._system, self._plates = joint, system, plates
         self._dissipated = np.zeros(len(system.sections))  # J/m, of each contact
+        self._rubbed = np.zeros(len(system.faying))  # J, of each faying surface
         self._rest: dict[int, np.ndarray] = {}  # where the pin first rested on each hole
 
     def state(self, now: Configuration, step: int, load: dict[str, float]) -> JointState:
@@ -63,7 +65,18 @@ class StateMaker:
         for motion, by in zip(system.given.moving, now.motion[3 * len(passed) :], strict=True):
             moved[motion.plate] += by * units * motion.at(0j)
         forces = passed[:, :2] * scales.force * thickness
-        return JointState(self._joint, step, load, tuple(contacts), forces, moved, residuals)
+        return JointState(self._joint, step, load, tuple(contacts), forces, moved, residuals, self._faying(now))
+
+    def _faying(self, now: Configuration) -> tuple[FayingState, ...]:
+        """The faying surfaces of clamped plates."""
+        system, scales, found = self._system, self._system.scales, []
+        thick = self._joint.plates[0].thickness
+        for place, (force, sides) in enumerate(zip(system.rubbed(now.tractions), system.sides, strict=True)):
+            lost = float(now.slip_tally.sums[1, sides].sum()) * scales.force * scales.displacement * thick
+            self._rubbed[place] += lost
+            slip = 0.0 - (NORMALS @ now.slip[sides]) * scales.displacement
+            found.append(FayingState(force * scales.force * thick, slip, float(self._rubbed[place])))
+        return tuple(found)
 
     def _contact(
         self, now: Configuration, step: int, place: int, passed: np.ndarray, residuals: dict[str, float]
@@ -103,12 +116,17 @@ class StateMaker:
         plate, problem = self._plates[section.plate], section.problem
         matrix = plate.block(section.hole, section.hole).copy()
         matrix[np.abs(matrix) < ROUNDED] = 0.0
-        incoming, others, loads = np.zeros(len(matrix)), [np.zeros((0, len(matrix)))], np.zeros(len(COLUMNS))
+        loads, on_holes = np.zeros(len(COLUMNS)), np.zeros((plate.holes, len(matrix)))
         for other, nodes, integrals in zip(system.sections, system.nodes.parts, system.integrals, strict=True):
             if other.plate == section.plate and other.hole != section.hole:
-                coefficients = integrals @ np.concatenate([now.pressure[nodes], now.shear[nodes]])
-                incoming += plate.block(section.hole, other.hole) @ coefficients
-                others.append(coefficients[None])
+                on_holes[other.hole] += integrals @ np.concatenate([now.pressure[nodes], now.shear[nodes]])
+        for surface, sides in zip(system.faying, system.sides, strict=True):
+            for other, sign in ((system.sections[at], sign) for at, sign in surface.signs):
+                if other.plate == section.plate:
+                    on_holes[other.hole] += rim_basis(len(matrix), sign, other.thickness)[1] @ now.shear[sides]
+        incoming = np.zeros(len(matrix))
+        for hole, coefficients in enumerate(on_holes):
+            incoming += plate.block(section.hole, hole) @ coefficients
         for of, name, load in system.given.columns:
             if of == section.plate:
                 loads[COLUMNS.index(name)] = now.load[len(LOADS) + load]
@@ -117,7 +135,8 @@ class StateMaker:
         try:
             return HoleInPlate(
                 pair.plate.nu, pair.plane, problem.hole_radius, matrix, incoming=incoming * unit,
-                others=np.concatenate(others) * unit, loads=loads * unit,
+                others=np.delete(on_holes, section.hole, axis=0) * unit, loads=loads * unit,
+                rubbed=on_holes[section.hole] * unit,
             )  # fmt: skip
         except InputError as error:
             raise InputError(
@@ -130,7 +149,7 @@ def unbalanced(system: PinsSystem, now: Configuration) -> float:
 
     It is recomputed from the tractions and the springs of loose pins, without the conditions of the solver.
     """
-    load, count = now.load[len(LOADS) : -2], len(system.sections)
+    load, count, rubbed = now.load[len(LOADS) : -2], len(system.sections), system.rubbed(now.tractions)
     passed, motion = system.passed(now.tractions), (now.motion - now.rest)[: 3 * count].reshape(count, 3)
     pushed = np.array([[each.thickness] for each in system.sections]) * (passed + CENTRING * motion)
     left = []
@@ -141,5 +160,8 @@ def unbalanced(system: PinsSystem, now: Configuration) -> float:
     for motion, force in zip(system.given.moving, system.given.plates @ load, strict=True):
         of = zip(system.sections, pushed, strict=True)
         left.append(float(sum(push @ motion.at(each.at) for each, push in of if each.plate == motion.plate) + force))
-    size = float((np.abs(system.resultants) @ np.abs(now.tractions)).max())
+        for surface, friction in zip(system.faying, rubbed, strict=True):
+            for each, sign in ((system.sections[at], sign) for at, sign in surface.signs):
+                left[-1] += sign * float(friction @ motion.at(each.at)[:2]) if each.plate == motion.plate else 0.0
+    size = float(max(*(np.abs(system.resultants) @ np.abs(now.tractions)), *np.abs(rubbed).ravel()))
     return float(np.abs(left).max()) / size if size else 0.0

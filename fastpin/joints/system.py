@@ -8,7 +8,8 @@ The conditions are the equilibrium of every pin and plate, and the coherence of 
     first plate of a pin    sum over its plates of t (F + e c) = force on the pin, for x and y
     each further plate      D_before - D + flexibility times the force between both plates = 0, for x and y
     rotations               one moment for all plates of a pin; equal rotations
-    plate that moves        the work of all t (F + e c) and moments on each of its motions + that of its loads = 0
+    plate that moves        the work of all t (F + e c), of moments, of friction of faying surfaces and of its loads on
+                            each of its motions = 0
 
 F is the force of the pin on the plate per thickness, t the thickness, and D = c + plate's displacement + g F - k J the
 displacement of the pin's section, (T29) of docs/theory.md. A weak spring of stiffness e holds every pin in the middle
@@ -31,6 +32,7 @@ from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.interfaces import TURN, Nodes
 from fastpin.elasticity.operator import DenseOperator
 from fastpin.elasticity.system import Interface, System
+from fastpin.joints.faying import SIDES, SPREAD, FayingSurface, rim_basis, rows_of
 from fastpin.lugs.several_holes import HolesCompliance
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, P, Q
@@ -132,6 +134,8 @@ class PinsSystem(System):
         Coefficients of the traction of each section in the basis of a compliance, per traction at its nodes.
     springs : ndarray, shape (m, m)
         The part of ``motion_rows`` that the springs of loose pins give.
+    faying : tuple of FayingSurface
+        Their sides stand behind the nodes of the contacts.
     """
 
     nodes: Nodes = field(kw_only=True)
@@ -139,6 +143,7 @@ class PinsSystem(System):
     given: JointLoads = field(kw_only=True)
     integrals: tuple[np.ndarray, ...] = field(kw_only=True)
     springs: np.ndarray = field(kw_only=True)
+    faying: tuple[FayingSurface, ...] = field(kw_only=True)
 
     @property
     def is_toeplitz(self) -> bool:
@@ -152,6 +157,11 @@ class PinsSystem(System):
     def interfaces(self) -> tuple[Interface, ...]:
         parts = enumerate(zip(self.sections, self.nodes.grids, self.nodes.parts, strict=True))
         return tuple(Interface(each.problem, grid, nodes, 3 * place, 1.0) for place, (each, grid, nodes) in parts)
+
+    @cached_property
+    def sides(self) -> list[slice]:
+        """The nodes of the sides of each faying surface."""
+        return rows_of(self.faying, self.nodes.parts[-1].stop)
 
     @cached_property
     def ends(self) -> np.ndarray:
@@ -192,6 +202,11 @@ class PinsSystem(System):
         found: np.ndarray = (self.resultants @ tractions).reshape(-1, 3)
         return found
 
+    def rubbed(self, tractions: np.ndarray) -> np.ndarray:
+        """Force of friction of each faying surface on its first plate, shape (surfaces, 2)."""
+        shears = tractions[self.nodes.size + self.nodes.parts[-1].stop :]
+        return shears.reshape(-1, SIDES) @ SPREAD.T
+
 
 def _sections_of_pins(sections: Sequence[PinSection]) -> list[list[int]]:
     """The places of the sections of each pin."""
@@ -210,6 +225,7 @@ def build(
     given: JointLoads,
     grids: Sequence[Grid],
     force: float,
+    faying: Sequence[FayingSurface] = (),
 ) -> PinsSystem:
     """Fill the matrices of a joint with reference force `force`, N/m.
 
@@ -222,41 +238,78 @@ def build(
     grids : sequence of Grid
         The nodes of each section, all round.
     force : float
+    faying : sequence of FayingSurface
     """
-    nodes = Nodes(tuple(grids))
+    nodes = Nodes(tuple(grids), SIDES * len(faying))
     alone = [System.build(each.problem, grid, force) for each, grid in zip(sections, grids, strict=True)]
     scales, size = alone[0].scales, nodes.size
     stretch = [system.scales.displacement / scales.displacement for system in alone]
     matrix = np.zeros((2 * size, 2 * size), order="F")
     motion = np.zeros((2 * size, 3 * len(sections) + len(given.moving)))
     loads = np.zeros((2 * size, len(LOADS) + given.pins.shape[2] + 2))
-    bases = [basis(plates[each.plate].block(0, 0), grid) for each, grid in zip(sections, grids, strict=True)]
     for a, (one, system) in enumerate(zip(sections, alone, strict=True)):
-        own, plate = nodes.rows(a), plates[one.plate]
-        unit = force / (one.problem.pair.plate.shear_modulus * scales.displacement)
+        own = nodes.rows(a)
         local = system.operator.entries()  # the forces of the pins are no loads here: their columns join the operator
         local += system.loads[:, [Q, P]] @ (system.equilibrium[:2] * [[1.0], [-1.0]])
         matrix[np.ix_(own, own)] = stretch[a] * local
         motion[own, 3 * a : 3 * a + 3] = system.motion
-        for b, other in enumerate(sections):
-            if other.plate == one.plate:
-                block = plate.block(one.hole, other.hole)
-                matrix[np.ix_(own, nodes.rows(b))] += unit * (bases[a][0] @ (block @ bases[b][1]))
-        for of, name, place in given.columns:
-            if of == one.plate:
-                loads[own, len(LOADS) + place] += unit * (bases[a][0] @ plate.column(name, one.hole))
         loads[own[: own.size // 2], -2] = given.fit[a] * one.problem.hole_radius / scales.displacement
+    bases = [basis(plates[each.plate].block(0, 0), grid) for each, grid in zip(sections, grids, strict=True)]
+    rims = [(each, nodes.rows(a), *bases[a]) for a, each in enumerate(sections)]
     beta = scales.displacement / force
     equilibrium, rows, springs, forces = _conditions(sections, alone, nodes, given, beta)
+    rims += _faying_rims(faying, sections, plates, given, nodes, matrix, motion, loads)
+    rubbing = slice(size + nodes.parts[-1].stop, 2 * size)
+    equilibrium[:, rubbing] = motion[rubbing].T  # friction does work on the motions of plates
+    for one, own, out, _ in rims:
+        plate = plates[one.plate]
+        unit = force / (one.problem.pair.plate.shear_modulus * scales.displacement)
+        for other, columns, _, into in rims:
+            if other.plate == one.plate:
+                block = plate.block(one.hole, other.hole)
+                matrix[np.ix_(own, columns)] += unit * (out @ (block @ into))
+        for of, name, place in given.columns:
+            if of == one.plate:
+                loads[own, len(LOADS) + place] += unit * (out @ plate.column(name, one.hole))
     loose = [np.maximum(s * each.concentric_gap, 0.0) for s, each in zip(stretch, alone, strict=True)]
     return PinsSystem(
         problem=sections[0].problem, grid=nodes, scales=scales, rest_clearance=0.0,  # type: ignore[arg-type]
         operator=DenseOperator(matrix), motion=motion, loads=loads, equilibrium=equilibrium, motion_rows=rows,
         forces=forces, plate=0.0, drive=Drive(motion[:, :2], loads), nodes=nodes, sections=tuple(sections), given=given,
-        integrals=tuple(each[1] for each in bases), springs=springs,
-        friction=np.concatenate([each.friction for each in alone]),
-        initial_gap=np.concatenate(loose), weights=np.concatenate([each.weights for each in alone]),
+        integrals=tuple(each[1] for each in bases), springs=springs, faying=tuple(faying),
+        friction=np.concatenate([*(each.friction for each in alone), np.repeat([s.limit for s in faying], SIDES)]),
+        initial_gap=np.concatenate([*loose, np.zeros(nodes.further)]),
+        weights=np.concatenate([*(each.weights for each in alone), np.ones(nodes.further)]),
     )  # fmt: skip
+
+
+def _faying_rims(
+    faying: Sequence[FayingSurface],
+    sections: Sequence[PinSection],
+    plates: Sequence[HolesCompliance],
+    given: JointLoads,
+    nodes: Nodes,
+    matrix: np.ndarray,
+    motion: np.ndarray,
+    loads: np.ndarray,
+) -> list[tuple[PinSection, np.ndarray, np.ndarray, np.ndarray]]:
+    """Fill in what faying surfaces do without the compliance of the plates. Returns the rims on which they act.
+
+    A rim is a section, the rows of its nodes, and its basis in the harmonics of the hole.
+    """
+    rims = []
+    for surface, sides in zip(faying, rows_of(faying, nodes.parts[-1].stop), strict=True):
+        normal = np.arange(sides.start, sides.stop)
+        shear = nodes.size + normal
+        matrix[normal, normal], loads[normal, -1] = 1.0, -1.0  # their pressure is 1 with the load of the springs
+        matrix[np.ix_(shear, shear)] = surface.compliance()
+        for place, sign in surface.signs:
+            one = sections[place]
+            rims.append((one, shear, *rim_basis(len(plates[one.plate].block(0, 0)), sign, one.thickness)))
+            for number, moving in enumerate(given.moving, start=3 * len(sections)):
+                if moving.plate == one.plate:
+                    motion[shear, number] += sign * (moving.at(one.at)[:2] @ SPREAD)
+    return rims
 
 
 class _Conditions:

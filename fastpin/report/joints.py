@@ -36,6 +36,9 @@ from fastpin.states.state import State
 MOST_LISTED = 20
 """Most margins, and most lives, that are printed."""
 
+SLIGHT = 1e-4
+"""Friction across the load that is not printed, in parts of the limit: a path may keep as much of it by chance."""
+
 UNRESOLVED = " (not resolved)"
 """Words beside a value that the nodes do not resolve."""
 
@@ -116,11 +119,16 @@ def describe(judged: Judged) -> str:
     if not len(result):
         return "\n".join(head)
     parts = [*head, "", forces_table(result), "", largest_table(result)]
+    if joint.faying:
+        parts += ["", faying_table(result)]
     return "\n".join([*parts, *margin_lines(judged), *fatigue_lines(judged), *crack_lines(judged)])
 
 
 def forces_table(result: JointResult) -> str:
-    """Return the loads, the displacements of plates that move, and the force of each pin on its first plate."""
+    """Return the loads, the displacements of plates that move, and the force of each pin on its first plate.
+
+    The friction of each faying surface follows, with its sign: the force on the first one of both plates.
+    """
     joint, states = result.joint, result.states
     unit = joint_units(joint)
     columns: list[Column] = [("load point", "", [str(state.step + 1) for state in states])]
@@ -141,6 +149,11 @@ def forces_table(result: JointResult) -> str:
         shares = [state.shares(pin.plates[0])[pin.name] for state in states]
         if not all(math.isnan(share) for share in shares):
             columns.append(("share", "%", ["-" if math.isnan(share) else f"{100 * share:.3g}" for share in shares]))
+    for place, surface in enumerate(joint.faying):
+        for k, axis in enumerate("xy"):
+            values = [float(state.faying[place].force[k]) for state in states]
+            if max(map(abs, values)) > SLIGHT * surface.clamp.limit:
+                columns.append(_column(f"friction {surface}.{axis}", values, unit["force"]))
     return table(columns)
 
 
@@ -158,6 +171,19 @@ def largest_table(result: JointResult) -> str:
     columns.append(("largest hoop", label, words))
     columns.append(("at", "deg", [f"{angles.from_bottom(row['hoop_angle']):z.1f}" for row in rows]))
     columns.append(("load point", "", [str(row["hoop_step"]) for row in rows]))
+    columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
+    columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
+    return table(columns)
+
+
+def faying_table(result: JointResult) -> str:
+    """Return what is largest of all states at each faying surface of clamped plates."""
+    rows, unit = [faying_row(result, place) for place in range(len(result.joint.faying))], joint_units(result.joint)
+    columns: list[Column] = [("pin", "", [row["pin"] for row in rows])]
+    columns.append(("faying surface", "", ["-".join(row["plates"]) for row in rows]))
+    columns.append(_column("largest friction", [row["force"] for row in rows], unit["force"]))
+    columns.append(("of the limit", "%", [f"{100.0 * row['used']:.4g}" for row in rows]))
+    columns.append(("load point", "", [str(row["step"]) for row in rows]))
     columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
     columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
     return table(columns)
@@ -241,6 +267,25 @@ def contact_row(result: JointResult, place: int) -> dict[str, Any]:
         "resolved": peaks[hoop].resolved,
         "slip": max(float(np.max(contact.slip_distance)) for contact in contacts),  # type: ignore[arg-type]
         "dissipation": contacts[-1].dissipation * plate.thickness,
+    }
+
+
+def faying_row(result: JointResult, place: int) -> dict[str, Any]:
+    """What is largest of all states at one faying surface, SI. Load points count from 1.
+
+    The friction in parts of its limit is 1 where the surface slips, and up to 1.02 between the sides of its polygon.
+    """
+    surface = result.joint.faying[place]
+    forces = [float(np.hypot(*state.faying[place].force)) for state in result.states]
+    top = ties.top(forces)
+    return {
+        "pin": surface.pin,
+        "plates": [surface.plate, surface.other],
+        "force": forces[top],
+        "used": forces[top] / surface.clamp.limit,
+        "step": top + 1,
+        "slip": max(float(np.hypot(*state.faying[place].slip)) for state in result.states),
+        "dissipation": result[-1].faying[place].dissipation,
     }
 
 
@@ -334,6 +379,42 @@ LARGEST = (
 )
 """Outputs of a :func:`contact_row`."""
 
+FAYING = (
+    Output("pin", "text"),
+    Output("plates", form=list_of(TEXT, 2)),
+    *outputs.numbers("force", "force"),
+    Output("used"),
+    Output("step", "whole"),
+    Output("slip", "displacement"),
+    Output("dissipation", "energy"),
+)
+"""Outputs of a :func:`faying_row`."""
+
+
+RUBBED = (
+    Output("pin", "text"),
+    Output("plates", form=list_of(TEXT, 2)),
+    *(Output(name, form=list_of(NUMBER, 2)) for name in ("force", "slip")),
+    Output("dissipation", "energy"),
+)
+"""Outputs of a faying surface in a state."""
+
+
+def _rubbed(state: JointState) -> list[dict[str, Any]]:
+    """The faying surfaces of a state, in printed units but for the energy."""
+    unit = joint_units(state.joint)
+    return [
+        {
+            "pin": surface.pin,
+            "plates": [surface.plate, surface.other],
+            "force": unit["force"].factor * at.force,
+            "slip": unit["displacement"].factor * at.slip,
+            "dissipation": at.dissipation,
+        }
+        for surface, at in zip(state.joint.faying, state.faying, strict=True)
+    ]
+
+
 JOINT_STATE = (
     Output("load_point", "whole", lambda state: state.step + 1),
     Output("loads", of=_loads, form=map_of(NUMBER, "forces and stresses")),
@@ -344,6 +425,7 @@ JOINT_STATE = (
         "contacts", "list", lambda state: [JointContact(state, place) for place in range(len(state.contacts))],
         parts=CONTACT,
     ),
+    Output("faying", "list", _rubbed, parts=RUBBED),
     Output("residuals", form=map_of(NUMBER, "violations of the conditions of contact and equilibrium")),
 )  # fmt: skip
 """Outputs of a state of a joint."""
@@ -398,6 +480,14 @@ JOINT = (
             for place in range(len(judged.result.joint.sections) * bool(len(judged.result)))
         ],
         parts=LARGEST,
+    ),
+    Output(
+        "largest_faying", "list",
+        lambda judged: [
+            faying_row(judged.result, place)
+            for place in range(len(judged.result.joint.faying) * bool(len(judged.result)))
+        ],
+        parts=FAYING,
     ),
     Output("margins", of=_margins, form=list_of(schema_of((*NAMES, *margins.ROW)))),
     Output(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fastpin import Material, MaterialPair, SolveError
-from fastpin.joints import Joint, JointPin, JointPlate, JointState, solve_joint
+from fastpin.joints import Clamp, Joint, JointPin, JointPlate, JointState, solve_joint
 from fastpin.lugs.outline import rectangle
 from tests.support.tiers import seeds
 
@@ -19,7 +21,7 @@ COVER = JointPlate("cover", MATERIALS[0], 0.7, rectangle((-4.0, 15.0), (-4.0, 5.
 
 
 def random_joint(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]]]:
-    """Three pins in a sheet, with a free cover or without: all fits, free directions and signs of all loads."""
+    """Three pins in a sheet, with a free cover, clamped or not, or without: all fits, directions and signs of loads."""
     material, covered = MATERIALS[rng.integers(3)], bool(rng.random() < 0.7)
     unit = MaterialPair(material, SHEET.material, "stress").beta_star * FORCE
     pins = []
@@ -33,6 +35,12 @@ def random_joint(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]
     names = [name for name in joint.load_names if rng.random() < 0.6]
     sizes = {name: FORCE * (0.2 if joint.is_stress(name) else 1.0) for name in names}
     corners = [{name: float(rng.uniform(-1.0, 1.0)) * size for name, size in sizes.items()} for _ in range(3)]
+    clamps = [Clamp(float(rng.choice([0.5, 2.0, 8.0])) * FORCE, float(rng.choice([0.0, 0.1, 0.5]))) for _ in pins]
+    if rng.random() < 0.5:
+        pins = [
+            replace(pin, clamp=clamp) if len(pin.plates) == 2 else pin for pin, clamp in zip(pins, clamps, strict=True)
+        ]
+        joint = replace(joint, pins=tuple(pins))
     return joint, corners
 
 
@@ -51,6 +59,8 @@ def check_state(state: JointState) -> None:
         given = [state.load[f"{pin.name}.x"], state.load[f"{pin.name}.y"]]
         # Springs that hold loose pins take 1e-6 of a displacement.
         np.testing.assert_allclose(state.forces[places].sum(axis=0), given, atol=1e-4 * FORCE)
+    for surface, at in zip(joint.faying, state.faying, strict=True):
+        assert np.hypot(*at.force) <= 1.02 * surface.clamp.limit + 1e-4 * FORCE
     assert max(state.residuals.values()) <= 1e-9
 
 

@@ -16,34 +16,7 @@ from fastpin.model import FatigueAssessment
 from fastpin.report import joints as report
 from fastpin.report import json_schema
 from tests.support.faults import faults_of
-
-SHEETS = """
-title = "two bolts"
-
-[joint]
-nodes = 24
-
-[[plate]]
-name = "sheet"
-material = "aluminium"
-thickness = 2e-3
-
-[[pin]]
-name = ["A", "B"]
-at = [[0.0, 0.0], [20e-3, 0.0]]
-material = "steel"
-diameter = 5e-3
-plates = ["sheet"]
-clearance = 5e-6
-friction = 0.2
-
-[[load]]
-"A.x" = 4e3
-"B.x" = 2e3
-
-[[load]]
-"A.x" = 1e3
-"""
+from tests.support.laps import SHEETS
 
 
 def solved() -> JointResult:

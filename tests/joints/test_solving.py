@@ -12,16 +12,12 @@ import pytest
 
 import fastpin
 from fastpin import Grid, InputError, Interrupted, Material, MaterialPair, Problem, SolveError
-from fastpin.joints import Joint, JointPin, JointPlate, JointResult, solve_joint, tate_rosenfeld
+from fastpin.joints import Joint, JointPin, JointPlate, JointResult, solve_joint
 from fastpin.lugs.outline import rectangle
 from fastpin.model import LOADS
 from fastpin.model.angles import BOTTOM
+from tests.support.laps import ALUMINIUM, BETA, FORCE, SHEET, STEEL, dissipated, lap, peaks, through_both, with_cover
 from tests.support.refusals import refused
-
-ALUMINIUM, STEEL = Material(72e9, 0.33), Material(210e9, 0.30)
-FORCE = 1e6
-BETA = MaterialPair(STEEL, ALUMINIUM, "stress").beta_star
-SHEET = JointPlate("sheet", ALUMINIUM, 1.0)
 
 
 def in_sheet(*centres: complex, clearance: float = 0.1, friction: float = 0.3, material: Material = STEEL) -> Joint:
@@ -31,27 +27,6 @@ def in_sheet(*centres: complex, clearance: float = 0.1, friction: float = 0.3, m
         for k, at in enumerate(centres)
     ]
     return Joint((SHEET,), tuple(pins))
-
-
-def with_cover(*pins: JointPin, thickness: float = 0.5) -> Joint:
-    """Pins that join a free cover to an infinite sheet."""
-    cover = JointPlate("cover", ALUMINIUM, thickness, rectangle((-4.0, 16.0), (-4.0, 4.0)), moves="free")
-    return Joint((SHEET, cover), pins)
-
-
-def through_both(name: str, at: complex, clearance: float, **extra: Any) -> JointPin:
-    """A steel pin through sheet and cover. The clearance is in units of F beta*."""
-    return JointPin(
-        name, at, STEEL, 1.0, ("sheet", "cover"), clearance * BETA * FORCE, extra.pop("friction", 0.3), **extra
-    )
-
-
-def peaks(result: JointResult, step: int) -> list[float]:
-    return [float(contact.pressure.max()) / FORCE for contact in result[step].contacts]
-
-
-def dissipated(result: JointResult, step: int) -> float:
-    return sum(contact.dissipation for contact in result[step].contacts) / (FORCE * FORCE * BETA)
 
 
 def hoop_at_top(result: JointResult, step: int) -> float:
@@ -86,21 +61,6 @@ def test_two_pins_with_interference() -> None:
     assert hoop_at_top(result, 0) == pytest.approx(0.68143, abs=2e-4)
     assert peaks(result, 2) == pytest.approx([0.7560, 0.7560], abs=6e-4)
     assert dissipated(result, 2) == pytest.approx(0.01205, abs=6e-5)
-
-
-def lap(clearances: tuple[float, ...], friction: float) -> Joint:
-    """A single lap of steel pins in strips: width 8, pitch 6, edge 4, 12 to the held end, all in radii."""
-    half = 3.0 * (len(clearances) - 1)
-    skin = JointPlate("skin", ALUMINIUM, 1.0, rectangle((-half - 12.0, half + 4.0), (-4.0, 4.0)), {"left": "both"})
-    strap = JointPlate(
-        "strap", ALUMINIUM, 1.0, rectangle((-half - 4.0, half + 12.0), (-4.0, 4.0)), {"right": "both"}, moves="x"
-    )
-    soft = tate_rosenfeld(2.0, STEEL, (ALUMINIUM, 1.0), (ALUMINIUM, 1.0))
-    pins = [
-        JointPin(f"p{k}", -half + 6.0 * k, STEEL, 1.0, ("skin", "strap"), each * BETA * FORCE, friction, soft)
-        for k, each in enumerate(clearances)
-    ]
-    return Joint((skin, strap), tuple(pins))
 
 
 @pytest.mark.survey
