@@ -14,9 +14,10 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from fastpin.lugs.outline import CLOSEST
 from fastpin.lugs.panels import Edges, near_integrals
 
-BLOCK = 50
+BLOCK = 100
 """Points whose integrals are taken at once."""
 
 
@@ -77,11 +78,22 @@ class EdgeField(NamedTuple):
         """Unit tangents at the nodes of the panels."""
         return np.asarray(1j * self.edges.normals[self.panels[self.edges.panel]])
 
-    def inside(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Phi and S at points (p,) inside, both (p, m)."""
+    def at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Phi and S at points (p,) inside or on the edges of the panels, both (p, m)."""
         other = -np.conj(self.potential * self.along[:, None]) - 1j * np.conj(self.traction)
-        parts = [self._integrals(z[k : k + BLOCK], other) for k in range(0, z.size, BLOCK)]
-        potential, spread = (np.concatenate(values) for values in zip(*parts, strict=True))
+        edges, panels = self.edges, np.flatnonzero(self.panels)
+        potential, spread = np.empty((2, z.size, self.potential.shape[1]), dtype=complex)
+        for begin in range(0, z.size, BLOCK):
+            part = np.arange(begin, min(begin + BLOCK, z.size))
+            panel, s, away = edges.nearest(z[part], panels)
+            inside, on_edge = part[away > CLOSEST], away <= CLOSEST
+            potential[inside], spread[inside] = self._integrals(z[inside], other)
+            for each in np.unique(panel[on_edge]).tolist():  # no integral is needed there
+                there, start = np.flatnonzero(on_edge & (panel == each)), (each - panels[0]) * edges.points
+                lagrange, along = edges.lagrange(s[there]), edges.at(panel[there], s[there])[1]
+                values = (lagrange @ known[start : start + edges.points] for known in (self.potential, self.traction))
+                potential[part[there]], traction = values
+                spread[part[there]] = spread_on(potential[part[there]], traction, along[:, None])
         return potential, spread
 
     def _integrals(self, z: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -95,21 +107,23 @@ class EdgeField(NamedTuple):
 
     def _kernels(self, z: np.ndarray) -> np.ndarray:
         """Cauchy's three kernels between points (p,) and nodes, over 2 pi i, shape (3, p, nodes of the panels)."""
-        edges = self.edges
-        first = int(np.argmax(self.panels[edges.panel]))  # the nodes of the hole come first
-
-        def kernels(r: np.ndarray, along: np.ndarray) -> np.ndarray:
-            inverse = 1.0 / r
-            return np.array([along * inverse, inverse, along * np.conj(r) * inverse * inverse])
-
+        edges, panels = self.edges, np.flatnonzero(self.panels)
+        first = panels[0] * edges.points
         with np.errstate(divide="ignore", invalid="ignore"):  # a node itself comes below
-            values = kernels(edges.z[first:] - z[:, None], 1j * edges.normals[first:]) * edges.weights[first:]
-        rows, columns, sums = near_integrals(edges, np.arange(edges.panel[first], edges.part.size), z, kernels)
-        for value, near in zip(values, sums.transpose(1, 0, 2), strict=True):
-            value[rows, columns - first] = near
+            r, along = edges.z[first:] - z[:, None], self.along
+            inverse = edges.weights[first:] / r
+            values = np.array([along * inverse, inverse, along * np.conj(r) / r * inverse])
+        rows, columns, sums = near_integrals(edges, panels, z)
+        for k, value in enumerate(values):
+            value[rows, columns - first] = sums[:, 2 * k] + 1j * sums[:, 2 * k + 1]
         return values / (2j * math.pi)
 
 
 def traction_on(potential: np.ndarray, spread: np.ndarray, along: np.ndarray) -> np.ndarray:
     """The traction on an edge with the unit tangents `along`, the plate to the left."""
     return np.asarray(-1j * along * (2.0 * potential.real + np.conj(spread * along**2)))
+
+
+def spread_on(potential: np.ndarray, traction: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """S on an edge from the traction there; see :func:`traction_on`."""
+    return np.asarray(np.conj(along) ** 2 * np.conj(1j * traction * np.conj(along) - 2.0 * potential.real))

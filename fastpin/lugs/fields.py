@@ -1,23 +1,25 @@
 """The stress anywhere in a plate of any outline, from what the integral equations of its compliance solve.
 
 The smooth field is the field beyond that of the hole in the infinite plate. It leaves the hole free, and its negative
-powers of z follow from the displacement of the hole's edge, (T48). So the integrals of :mod:`fastpin.lugs.cauchy` run
-over the other edges. Lengths are in hole radii.
+powers of z follow from the displacement of the hole's edge, (T48). The rest is regular in the hole. So the integrals of
+:mod:`fastpin.lugs.cauchy` run over the other edges. Lengths are in hole radii.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from functools import cached_property, lru_cache
-from typing import NamedTuple
+import math
+import threading
+from collections.abc import Callable, Mapping
+from functools import cached_property, lru_cache, wraps
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from fastpin.bodies.compliance import Compliance, complex_coefficients
 from fastpin.errors import InputError
 from fastpin.lugs.cauchy import EdgeField, traction_on
-from fastpin.lugs.outline import CLOSEST, Lug, distances
+from fastpin.lugs.outline import Lug
 from fastpin.lugs.panels import Fineness
 from fastpin.lugs.plates import NO_PINS, boundaries, hole_compliance, respond
 
@@ -39,6 +41,25 @@ AROUND = 33
 
 MOST_POINTS = 5_000
 """Points whose stresses are kept for other states, at most."""
+
+
+Found = TypeVar("Found")
+
+
+def once(most: int) -> Callable[[Callable[..., Found]], Callable[..., Found]]:
+    """Keep the last `most` results of a function. Threads that ask for one of them at once wait for one computation."""
+
+    def decorate(function: Callable[..., Found]) -> Callable[..., Found]:
+        known, locks = lru_cache(most)(function), [threading.Lock() for _ in range(16)]
+
+        @wraps(function)
+        def found(*arguments: Any) -> Found:
+            with locks[hash(arguments) % len(locks)]:
+                return known(*arguments)
+
+        return found
+
+    return decorate
 
 
 class EdgeHoop(NamedTuple):
@@ -104,14 +125,13 @@ class PlateField:
         loops = boundaries(lug, order, pinned)[1:]
         singular = [loop.parts[k].start for loop in loops for k in range(len(loop.parts)) if loop.is_singular(k)]
         self.singular = np.array(singular, dtype=complex)
-        self._edges = [part.scaled(1.0 / lug.hole_radius) for part in lug.edges]
         names = np.array([part.name for part in edges.parts])
         self._free = (edges.part >= edges.of_hole) & ~np.isin(names[edges.part], list(pinned))
         whole = EdgeField.of(edges, self.kolosov, moved, pulled)
         self.along_edges, field = self._hoop(whole.on(self._free)), whole.on(edges.part >= edges.of_hole)
-        potential, spread = _beside_hole(order, self.kolosov, edges.z[edges.is_further])
-        field.potential[:, :size] -= potential
-        field.traction[:, :size] -= traction_on(potential, spread, field.along[:, None])
+        potential, spread = self._beside_hole(moved, edges.z[edges.is_further])
+        field.potential[:] -= potential
+        field.traction[:] -= traction_on(potential, spread, field.along[:, None])
         self._field = field
 
     @cached_property
@@ -142,6 +162,22 @@ class PlateField:
         order = np.argsort(along, kind="stable")
         return EdgeHoop(self.order, z[order], along[order], [names[k] for k in order], values[kept][order])
 
+    def _beside_hole(self, moved: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Negative powers of Phi and S about the hole of all fields, at points z (m,), both (m, fields); (T48).
+
+        `moved` has the displacements 2G u/R of all nodes.
+        """
+        edges, K, n = self.edges, self.order, np.arange(-self.order, self.order + 1.0)[:, None]
+        hole = ~edges.is_further
+        waves = edges.weights[hole] / (2.0 * math.pi) * edges.z[hole] ** (-n - 1.0)
+        f = complex_coefficients(np.eye(2 + 4 * K, moved.shape[1]))
+        a = ((n + 1.0) * (waves @ moved[hole]) - f) / (self.kolosov + 1.0)
+        decaying, powers = a[K - 1 :: -1], z[:, None] ** -np.arange(K + 1.0)
+        potential, slope = powers[:, 1:] @ decaying, powers[:, 1:] @ (n[K - 1 :: -1] * decaying)
+        back = powers @ np.conj(a[K:] + f[K:]) + a[K] - self.kolosov * np.outer(z, np.conj(decaying[0]))
+        square = z[:, None] ** 2
+        return potential, ((np.abs(square) - 1.0) * slope + back + potential) / square
+
     def smooth(self, column: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The part of the smooth field that the integrals give: s_rr + s_tt and s_rr - i s_rt at points z (m,)."""
         if z.size > MOST_POINTS:
@@ -150,38 +186,17 @@ class PlateField:
         mean, radial = self._of_each(z.astype(complex).tobytes())
         return mean @ column, radial @ column
 
-    @lru_cache(maxsize=8)  # noqa: B019  the states of a history ask for the same points
+    @once(8)  # the states of a history ask for the same points
     def _of_each(self, places: bytes) -> tuple[np.ndarray, np.ndarray]:
         return self._stresses(np.frombuffer(places, dtype=complex), self._field)
 
     def _stresses(self, z: np.ndarray, field: EdgeField) -> tuple[np.ndarray, np.ndarray]:
         """s_rr + s_tt and s_rr - i s_rt of several fields at points z (m,), both (m, fields)."""
-        potential, spread = field.inside(self._moved(z))
+        potential, spread = field.at(z)
         return 4.0 * potential.real, 2.0 * potential.real - (z / np.conj(z))[:, None] * spread
 
-    def _moved(self, z: np.ndarray) -> np.ndarray:
-        """The points, those on an edge a little inside: the integrals jump there, and nothing is lost."""
-        found = z.copy()
-        for part in self._edges:
-            near = np.flatnonzero(distances(part, z) < CLOSEST)
-            foot, along = part.nearest(z[near])
-            found[near] = foot + CLOSEST * 1j * along
-        return found
 
-
-def _beside_hole(order: int, kolosov: float, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Phi and S at points z (m,) beside the hole in the infinite plate under each harmonic, (m, 2 + 4 K); (T48)."""
-    f = complex_coefficients(np.eye(2 + 4 * order))
-    n, powers = np.arange(1.0, order + 1.0), z[:, None] ** -np.arange(order + 1.0)
-    a = -f[order - 1 :: -1]  # of z^-n
-    a[0] /= kolosov + 1.0
-    potential, slope = powers[:, 1:] @ a, -(powers[:, 1:] * n) @ a
-    back = powers @ np.conj(f[order:]) + np.outer(z, -kolosov * np.conj(a[0]))
-    square = z[:, None] ** 2
-    return potential, ((np.abs(square) - 1.0) * slope + back + potential) / square
-
-
-@lru_cache(maxsize=4)
+@once(4)
 def plate_field(body: Compliance, pinned: tuple[str, ...] = ()) -> PlateField:
     """Return the field of a compliance that knows its outline. The further holes with the names `pinned` carry pins.
 

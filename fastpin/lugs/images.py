@@ -262,7 +262,7 @@ def image(
         moved[others, columns] = -displacement
     (u_x, u_y), (t_x, t_y) = equations.solve(tractions, moved)
     field = EdgeField.of(edges, equations.kolosov, u_x + 1j * u_y, t_x + 1j * t_y, True)
-    potential, spread = field.inside(z)
+    potential, spread = field.at(z)
     found = 2.0 * potential.real + direction[:, None] ** 2 * spread
     normal, tangential = found[:, : z.size], found[:, z.size :]
     return 0.5 * (normal - 1j * tangential), 0.5 * (normal + 1j * tangential)

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.lugs import quadrature
 from fastpin.lugs.outline import Part, distances, turn_between
 from fastpin.model.checks import as_toml
 
@@ -195,6 +196,15 @@ class Edges:
         along = np.where(straight, span / np.abs(span), 1j * np.sign(self._turn[panel]) * ray)
         return origin + span * np.where(straight, s, ray), along
 
+    def nearest(self, z: np.ndarray, panels: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The nearest of some panels, its s there, and the distance of points z (m,), each (m,)."""
+        away, turn = (z[:, None] - self._origin[panels]) / self._span[panels], self._turn[panels]
+        turned = np.angle(away * np.exp(-1j * self._angle[panels])) / np.where(turn == 0.0, 1.0, turn)
+        s = np.clip(np.where(self.is_straight[panels], away.real, turned), -1.0, 1.0)
+        distance = np.abs(self.at(panels, s)[0] - z[:, None])
+        rows, best = np.arange(z.size), np.argmin(distance, axis=1)
+        return panels[best], s[rows, best], distance[rows, best]
+
     @cached_property
     def derivative(self) -> np.ndarray:
         """Slopes at the nodes of a panel from values there, for s from -1 to 1, shape (points, points)."""
@@ -205,9 +215,17 @@ class Edges:
 
     def lagrange(self, s: np.ndarray) -> np.ndarray:
         """The polynomials that are 1 at one node of a panel and 0 at the others, at s; shape (..., points)."""
-        legendre = np.polynomial.legendre.legvander
-        found: np.ndarray = legendre(s, self.points - 1) @ np.linalg.inv(legendre(self.rule[0], self.points - 1))
-        return found
+        return np.asarray(np.polynomial.legendre.legvander(s, self.points - 1) @ self.polynomials)
+
+    @cached_property
+    def polynomials(self) -> np.ndarray:
+        """The polynomials of :meth:`lagrange` as sums of Legendre polynomials: factors, in columns."""
+        return np.linalg.inv(np.polynomial.legendre.legvander(self.rule[0], self.points - 1))
+
+    @property
+    def geometry(self) -> tuple[np.ndarray, ...]:
+        """What :func:`fastpin.lugs.quadrature.over_panels` knows of panels: shape, origin, span, angle, turn, half."""
+        return self.is_straight, self._origin, self._span, self._angle, self._turn, self.half
 
 
 def _panels(loops: Sequence[Boundary], parts: list[Part], fineness: Fineness) -> list[tuple[int, float, float]]:
@@ -261,72 +279,55 @@ def _cuts(parts: list[Part], loop: Boundary, place: int, halvings: tuple[int, in
     return found
 
 
-# -- the two matrices -----------------------------------------------------------------------------------------
+# -- integrals over panels -------------------------------------------------------------------------------------
 
 
-def kernels(r: np.ndarray, normals: np.ndarray, kolosov: float, scale: float) -> np.ndarray:
-    """Kelvin's 2G U (xx, xy, yy) and T (xx, xy, yx, yy) at distances `r` = y - x, shape (7, ...).
-
-    The first index of T is the direction of the unit force at x. Distances in the logarithm are in units of `scale`.
-    """
-    k, square = kolosov, r.real**2 + r.imag**2
-    distance = np.sqrt(square)
-    x, y = r.real / distance, r.imag / distance
-    factor = 1.0 / (math.pi * (1.0 + k))
-    log = -0.5 * k * np.log(square / scale**2)
-    shear = 0.5 * (k - 1.0)
-    along = x * normals.real + y * normals.imag
-    across = shear * (normals.real * y - normals.imag * x)
-    found = np.empty((7, *np.shape(along)))
-    found[0], found[1], found[2] = log + x * x, x * y, log + y * y
-    found[3], found[6] = along * (shear + 2.0 * x * x), along * (shear + 2.0 * y * y)
-    found[4], found[5] = 2.0 * x * y * along + across, 2.0 * x * y * along - across
-    found[:3] *= factor
-    found[3:] *= -factor / distance
-    return found
-
-
-PLACES = ((0, 0, 0), (0, 0, 1), (0, 1, 1), (1, 0, 0), (1, 0, 1), (1, 1, 0), (1, 1, 1))
-"""Matrix (U or T), and components of x and y, of each of the seven kernels."""
-
-
-def matrices(edges: Edges, kolosov: float, scale: float, progress: Callable[[float], None]) -> np.ndarray:
-    """The matrices of U and T between nodes, shape (2, 2, nodes, 2, nodes); T holds u/2 too.
+def matrices(
+    edges: Edges, kolosov: float, scale: float, columns: np.ndarray, progress: Callable[[float], None]
+) -> tuple[np.ndarray, np.ndarray]:
+    """The matrices of Kelvin's U and T between nodes; T holds u/2 too.
 
     A rigid motion has no tractions, so that each row of T has the sum 0. It gives the entry of the node itself.
+
+    Parameters
+    ----------
+    edges : Edges
+    kolosov : float
+    scale : float
+        Unit of distances in the logarithm of U.
+    columns : ndarray of int, shape (m,)
+        Nodes that U is needed for, in order; all nodes of a panel or none.
+    progress : callable
+        Called with the part that is done.
+
+    Returns
+    -------
+    ndarray, shape (2, nodes, 2, m)
+    ndarray, shape (2, nodes, 2, nodes)
     """
-    count, chunk, near = edges.z.size, 200, 32  # rows, and panels with near nodes, that are computed at once
-    both = np.empty((2, 2, count, 2, count))
+    count, chunk, near = edges.z.size, 200, 32  # rows, and panels with near nodes, between calls of the progress
+    U, T = np.empty((2, count, 2, columns.size)), np.empty((2, count, 2, count))
+    place = np.full(count, -1)
+    place[columns] = np.arange(columns.size)
+    here, nodes_of = np.arange(count), (edges.z, 1j * edges.normals, edges.weights)
     for first in range(0, count, chunk):
-        rows = slice(first, first + chunk)
-        with np.errstate(divide="ignore", invalid="ignore"):  # the node itself comes later
-            values = kernels(edges.z - edges.z[rows, None], edges.normals, kolosov, scale) * edges.weights
-        for value, (matrix, i, j) in zip(values, PLACES, strict=True):
-            both[matrix, i, rows, j] = value
+        quadrature.between_nodes(here[first : first + chunk], *nodes_of, kolosov, scale, place, U, T)
         progress(0.5 * first / count)
     for first in range(0, edges.part.size, near):
-        _near(edges, np.arange(first, min(first + near, edges.part.size)), kolosov, scale, both)
+        panels = np.arange(first, min(first + near, edges.part.size))
+        rows, nodes, sums = near_integrals(edges, panels, edges.z, kolosov, scale)
+        of_both = sums[:, [0, 1, 1, 2, 3, 4, 5, 6]].transpose(0, 2, 1).reshape(*nodes.shape, 2, 2, 2)
+        known = place[nodes[:, 0]] >= 0
+        U[:, rows[known], :, place[nodes[known]]] = of_both[known, :, 0]
+        T[:, rows, :, nodes] = of_both[:, :, 1]
         progress(0.5 + 0.5 * first / edges.part.size)
-    both[0, 1, :, 0] = both[0, 0, :, 1]
-    here = np.arange(count)
-    for i in range(2):
-        for j in range(2):
-            both[1, i, here, j, here] = 0.0
-            both[1, i, here, j, here] = -both[1, i, :, j].sum(axis=1)
-    return both
-
-
-def _near(edges: Edges, panels: np.ndarray, kolosov: float, scale: float, both: np.ndarray) -> None:
-    """Replace the entries between some panels and the nodes near them."""
-    rows, columns, sums = near_integrals(
-        edges, panels, edges.z, lambda r, along: kernels(r, -1j * along, kolosov, scale)
-    )
-    for kernel, (matrix, i, j) in enumerate(PLACES):
-        both[matrix, i, rows, j, columns] = sums[:, kernel]
+    T[:, here, :, here] = 0.0
+    T[:, here, :, here] = -T.sum(axis=3).transpose(1, 0, 2)
+    return U, T
 
 
 def near_integrals(
-    edges: Edges, panels: np.ndarray, points: np.ndarray, kernel: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    edges: Edges, panels: np.ndarray, points: np.ndarray, kolosov: float = 0.0, scale: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Integrals over panels and near points, of kernels times the polynomials of :meth:`Edges.lagrange`.
 
@@ -335,52 +336,19 @@ def near_integrals(
     edges : Edges
     panels : ndarray of int, shape (p,)
     points : ndarray of complex, shape (m,)
-    kernel : callable
-        ``kernel(r, along)`` gives the kernels (k, ...) at distances y - x, with unit tangents, both (...).
+    kolosov, scale : float
+        Of Kelvin's kernels. Without them the kernels are Cauchy's; see :mod:`fastpin.lugs.quadrature`.
 
     Returns
     -------
     rows, columns : ndarray of int, shape (pairs, 1) and (pairs, points of a panel)
         The point and the nodes of the panel.
-    sums : ndarray, shape (pairs, k, points of a panel)
+    sums : ndarray, shape (pairs, 7, points of a panel)
     """
     samples, _ = edges.at(panels[:, None], np.linspace(-1.0, 1.0, 9))
     distance = np.abs(points[:, None] - samples[:, None, :]).min(axis=2)
     place, node = np.nonzero(distance < 2.2 * edges.half[panels][:, None])  # within 1.1 lengths of a panel
-    panel = panels[place]
-    pair, middle, size = _subintervals(edges, panel, points[node])
-    gauss, weights = edges.rule
-    inner = middle[:, None] + size[:, None] * gauss
-    y, along = edges.at(panel[pair][:, None], inner)
-    values = kernel(y - points[node[pair]][:, None], along)
-    values *= weights * (size * edges.half[panel[pair]])[:, None]
-    integrals = values.transpose(1, 0, 2) @ edges.lagrange(inner)  # subintervals, kernels, nodes of the panel
-    starts = np.flatnonzero(np.diff(pair, prepend=-1))
-    sums = np.add.reduceat(integrals, starts, axis=0)
-    rows = node[pair[starts]][:, None]
-    columns = panel[pair[starts]][:, None] * edges.points + np.arange(edges.points)
-    return rows, columns, sums
-
-
-def _subintervals(edges: Edges, panel: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Subintervals of panels that are apart from points: the pair of panel and point in order, middle, half width.
-
-    A point is 1.5 lengths of a subinterval away from its middle. Subintervals at a point are left out below 2e-12 of
-    the panel and 1e-13 hole radii: the integrands are integrable there. This takes less than 60 halvings.
-    """
-    pair = np.arange(panel.size)
-    middle, size = np.zeros(panel.size), np.ones(panel.size)
-    found = []
-    for _ in range(60):
-        centre, _ = edges.at(panel[pair], middle)
-        half = edges.half[panel[pair]]
-        apart = np.abs(centre - points[pair]) >= 3.0 * size * half
-        found.append((pair[apart], middle[apart], size[apart]))
-        left = ~apart & (size > np.maximum(2e-12, 1e-13 / half))
-        if not left.any():
-            break
-        pair, size = np.tile(pair[left], 2), np.tile(0.5 * size[left], 2)
-        middle = np.tile(middle[left], 2) + np.repeat([-1.0, 1.0], size.size // 2) * size
-    pair, middle, size = (np.concatenate(values) for values in zip(*found, strict=True))
-    order = np.argsort(pair, kind="stable")
-    return pair[order], middle[order], size[order]
+    pairs = np.stack([panels[place], node], axis=1)
+    sums = np.zeros((len(pairs), quadrature.KERNELS, edges.points))
+    quadrature.over_panels(points, pairs, *edges.geometry, np.array(edges.rule), kolosov, scale, sums)
+    return pairs[:, 1:], pairs[:, :1] * edges.points + np.arange(edges.points), sums @ edges.polynomials

@@ -245,6 +245,8 @@ class PlateEquations:
     edges : Edges
     progress : callable
         Called with the part that is done.
+    loaded : ndarray of bool, shape (nodes,), optional
+        Nodes with given tractions, panel by panel. Unless given, all nodes may have some.
 
     Attributes
     ----------
@@ -252,28 +254,30 @@ class PlateEquations:
         Of a plate that floats.
     """
 
-    def __init__(self, lug: Lug, edges: Edges, progress: Callable[[float], None]) -> None:
+    def __init__(
+        self, lug: Lug, edges: Edges, progress: Callable[[float], None], loaded: np.ndarray | None = None
+    ) -> None:
         self.edges, self.modes = edges, _rigid_modes(lug, edges) if lug.floats else None
         held, frame = self._held, self._frame = _supports(lug, edges)
+        kept = self._kept = np.flatnonzero(held.any(axis=0) | (True if loaded is None else loaded))
         # At 1 (nu = 0.5 in plane strain) the pressure on an outline that is held all round moves nothing, and the
         # equations have no unique solution. The matrix changes by 1e-7.
         self.kolosov = kolosov = max(lug.kolosov, 1.0 + 1e-7)
         with threadpool_limits(limits=1, user_api="blas"):  # the same bits with any number of cores
             # With this unit of length no plate has the size at which a purely logarithmic equation for held edges has
             # no unique solution.
-            both = matrices(edges, kolosov, 8.0 * edges.extent, progress)
-            for matrix in both:  # both components of u and t at a node along the support's frame
-                x, y = matrix[:, :, 0], matrix[:, :, 1]
-                turned = -x * frame.imag + y * frame.real
-                x *= frame.real
-                x += y * frame.imag
-                matrix[:, :, 1] = turned
+            U, T = matrices(edges, kolosov, 8.0 * edges.extent, kept, progress)
+            turned = np.flatnonzero(frame != 1.0)
+            c, s = frame.real[turned], frame.imag[turned]
+            for matrix, at in ((U, np.searchsorted(kept, turned)), (T, turned)):  # along the frames of supports
+                x, y = matrix[:, :, 0, at], matrix[:, :, 1, at]
+                matrix[:, :, 0, at], matrix[:, :, 1, at] = x * c + y * s, y * c - x * s
             size = 2 * edges.z.size
-            self._of_tractions, T = both.reshape(2, size, size)
+            self._of_tractions, T = U.reshape(size, -1), T.reshape(size, size)
             if (modes := self.modes) is not None:  # the mean of the outline moves no more
                 T += modes.of_nodes @ np.linalg.solve(modes.gram, modes.on_outline.T)
             self._of_supports = T[:, held.reshape(-1)]
-            T[:, held.reshape(-1)] = -self._of_tractions[:, held.reshape(-1)]
+            T[:, held.reshape(-1)] = -self._of_tractions[:, held[:, kept].reshape(-1)]
             self._factors = scipy.linalg.lu_factor(T.T, overwrite_a=True, check_finite=False)
 
     def solve(self, tractions: np.ndarray, moved: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
@@ -286,7 +290,7 @@ class PlateEquations:
         along = np.stack([_dot(frame, tractions), _dot(1j * frame, tractions)])
         along[held] = 0.0
         with threadpool_limits(limits=1, user_api="blas"):
-            right = self._of_tractions @ along.reshape(-1, tractions.shape[1])
+            right = self._of_tractions @ along[:, self._kept].reshape(-1, tractions.shape[1])
             if moved is not None:
                 back = np.stack([_dot(frame, moved), _dot(1j * frame, moved)])
                 right -= self._of_supports @ back[held]
@@ -308,7 +312,9 @@ def respond(
     """
     edges = Edges(boundaries(lug, order, pinned), fineness)
     tractions, loads = _tractions(lug, edges, order, pinned)
-    equations, resultants = PlateEquations(lug, edges, lambda done: progress(0.7 * done)), None
+    loaded = np.repeat(tractions.any(axis=1).reshape(-1, edges.points).any(axis=1), edges.points)
+    loaded |= lug.floats  # the outline balances the pins
+    equations, resultants = PlateEquations(lug, edges, lambda done: progress(0.7 * done), loaded), None
     if equations.modes is not None:
         tractions, resultants = _balanced(tractions, equations.modes)
     u, pulled = equations.solve(tractions)

@@ -2,6 +2,8 @@
 
 import json
 import math
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -9,8 +11,10 @@ import pytest
 
 from fastpin import InputError, Points, solve
 from fastpin.bodies import Compliance, Ring
+from fastpin.lugs import fields
 from fastpin.lugs.fields import lug_of, plate_field
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad, rectangle
+from fastpin.lugs.panels import Fineness
 from fastpin.lugs.plates import plate_compliance
 from fastpin.states.margins import part_of
 from fastpin.states.yielding import place_words, von_mises_peak
@@ -134,6 +138,23 @@ def test_a_ring_as_an_outline_has_the_stress_of_its_closed_form(outer):
 
 
 @pytest.mark.gate
+def test_the_stress_on_edges_is_its_limit_from_inside(monkeypatch):
+    """Free edges have no traction but 3e-6, the error of the body's rough matrix."""
+    body = rough_body(monkeypatch, lug_with_bolt(), 12)
+    monkeypatch.setattr(fields, "FINENESS", Fineness(12, 8))
+    state = solve(problem_with(body), [{"P": 1.0, "Q": 0.4}], nodes=41)[-1]
+    inward = np.array([1j, -np.exp(-0.4j), -1.0, 1.0, 1.0, 1j, -1j])
+    z = np.array([-2.2j, 2.2 * np.exp(-0.4j), 2.2 + 1j, -2.2 + 4.3j, 0.5 + 4j, 4.5j, 0.3 + 10j])
+    there, inside = (state.stress(Points.at_xy(at.real, at.imag), straight=True) for at in (z, z + 1e-7 * inward))
+    for component in ("sxx", "syy", "sxy"):
+        assert getattr(there, component) == pytest.approx(getattr(inside, component), abs=5e-6)
+    x = there.sxx * inward.real + there.sxy * inward.imag
+    y = there.sxy * inward.real + there.syy * inward.imag
+    assert np.abs(x[:-1] + 1j * y[:-1]).max() < 1e-5  # the last one is held
+    assert abs(y[-1]) > 0.05
+
+
+@pytest.mark.gate
 def test_sections_through_a_lug_carry_the_load():
     body = plate_compliance(lug_with_nose()).compliance
     state = solve(problem_with(body), [{"P": 1.0, "Q": 0.3}], nodes=101)[-1]
@@ -198,3 +219,28 @@ def test_largest_stresses_are_looked_for_on_all_edges(monkeypatch):
         "apart from 0.25 R about sharp corners and ends of supports: "
         "[0.3 R, 3 R], [0.3 R, 9 R], [-0.3 R, 9 R], [-0.3 R, 3 R]"
     )
+
+
+def test_threads_wait_for_one_computation():
+    """A second thread waits for the same result, not for another one. The oldest result is forgotten."""
+    entered, done, calls = threading.Event(), threading.Event(), []
+
+    @fields.once(2)
+    def square(number):
+        calls.append(number)
+        if number == 3:
+            entered.set()
+            assert done.wait(10.0)
+        return [number * number]
+
+    with ThreadPoolExecutor(2) as pool:
+        first = pool.submit(square, 3)
+        assert entered.wait(10.0)
+        second = pool.submit(square, 3)
+        assert square(4) == [16]
+        assert not second.done()
+        done.set()
+        assert first.result() is second.result()
+    assert (calls, first.result()) == ([3, 4], [9])
+    assert (square(5), square(6), square(3)) == ([25], [36], [9])
+    assert calls == [3, 4, 5, 6, 3]

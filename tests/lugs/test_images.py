@@ -44,7 +44,7 @@ def pulled(equations):
     field = EdgeField.of(edges, equations.kolosov, u_x + 1j * u_y, t_x + 1j * t_y, True)
 
     def traction(z, direction):
-        potential, spread = (each[:, 0] for each in field.inside(z))
+        potential, spread = (each[:, 0] for each in field.at(z))
         return 2.0 * potential.real + direction**2 * spread
 
     return traction

@@ -410,6 +410,17 @@ def test_panels_cover_all_edges():
     assert area == pytest.approx(5.0 * 8.5 - math.pi * (1.0 + 0.64), rel=1e-12)
 
 
+def test_the_nearest_panel_of_a_point():
+    edges, random = Edges(loops(), COARSE), np.random.default_rng(4)
+    panels, s = np.arange(edges.part.size), random.uniform(-0.9, 0.9, edges.part.size)
+    z, along = edges.at(panels, s)
+    found, places, away = edges.nearest(z + 1e-3j * edges.half * along, panels[3:])
+    assert found[3:].tolist() == panels[3:].tolist()
+    assert places[3:] == pytest.approx(s[3:], abs=1e-2)
+    assert away[3:] == pytest.approx(1e-3 * edges.half[3:], rel=1e-6)
+    assert (found[:3] >= 3).all()
+
+
 def test_panels_shrink_towards_corners_and_other_edges():
     edges = Edges(loops(), COARSE)
     top = edges.half[edges.part == [part.name for part in edges.parts].index("top")]
@@ -423,7 +434,8 @@ def test_panels_shrink_towards_corners_and_other_edges():
 def test_the_matrices_reproduce_linear_and_quadratic_fields(kolosov):
     """2G u = k phi - z conj(phi') - conj(psi) with phi = a z^2 + b z, psi = c z satisfies Somigliana's identity."""
     edges = Edges(loops(), COARSE)
-    U, T = panels.matrices(edges, kolosov, 50.0, nothing).reshape(2, 2 * edges.z.size, 2 * edges.z.size)
+    whole = panels.matrices(edges, kolosov, 50.0, np.arange(edges.z.size), nothing)
+    U, T = (each.reshape(2 * edges.z.size, -1) for each in whole)
     a, b, c = 0.3 - 0.2j, 0.7, 0.4 + 0.5j
     z, n = edges.z, edges.normals
     phi, slope, psi = a * z**2 + b * z, 2.0 * a * z + b, c * z
