@@ -13,10 +13,10 @@ from functools import partial
 
 import numpy as np
 
-from fastpin.joints.system import PinsSystem
+from fastpin.joints.system import CENTRING, PinsSystem
 from fastpin.kernels import exchange
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.solver.configuration import Configuration, resting_status
+from fastpin.solver.configuration import Configuration, accept_solution, resting_status, solve_statuses
 from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.solver.increment import accepted, implicit_step
 from fastpin.solver.path import PathStep, StepLostError
@@ -27,8 +27,11 @@ from fastpin.solver.tableau import TableauMemory
 JUMPS = (1e-6, 1e-4, 1e-3, 1e-2)
 """Parts of a step at which a state beyond a snap is looked for."""
 
-NEGLIGIBLE = 1e-2
-"""Force of a contact that may be released, in parts of the largest one."""
+NEGLIGIBLE, OF_SPRINGS = 1e-2, 10.0
+"""Force of a contact that may be released, in parts of the largest one, and of that of the springs of loose pins."""
+
+BACK = (0.0, 1e-3, 1e-2, 1e-1)
+"""Parts of its way from the middle by which a released pin goes back: the edge that it touched may follow it."""
 
 MOST_SNAPS = 200
 """Snaps of one step, at most."""
@@ -117,7 +120,8 @@ def _beyond(
 
     Lemke's method takes most of the time, so it comes last.
     """
-    for way in (partial(finite_step, by_lemke=False), _released, partial(creep, on_springs=_on_springs)):
+    letting_go = [partial(_released, back=back) for back in BACK]
+    for way in (partial(finite_step, by_lemke=False), *letting_go, partial(creep, on_springs=_on_springs)):
         for jump in JUMPS:
             reached = min(done + jump, 1.0)
             found = way(system.resting(now.rest), now, before + reached * (after - before))
@@ -126,19 +130,29 @@ def _beyond(
     return None
 
 
-def _released(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
-    """A state at `load` in which contacts that carried next to nothing have let go; their pins rest where they are."""
+def _released(system: PinsSystem, start: Configuration, load: np.ndarray, back: float) -> Configuration | None:
+    """A state at `load` in which contacts that carried next to nothing have let go.
+
+    Their pins rest where they are, or a part `back` of their way from the middle back.
+    """
     forces = np.abs(system.passed(start.tractions)[:, :2]).max(axis=1)
-    light = np.flatnonzero((forces > 0.0) & (forces <= NEGLIGIBLE * forces.max()))
-    if not light.size:
+    springs = CENTRING * float(np.abs((start.motion - start.rest)[: 3 * forces.size]).max())
+    is_light = forces <= max(NEGLIGIBLE * forces.max(), OF_SPRINGS * springs)
+    let_go = {system.sections[place].pin for place in np.flatnonzero(is_light & (forces > 0.0))}
+    if not let_go:
         return None
     loose, rest = start.copy(), start.rest.copy()
-    for place in light:
+    for place in np.flatnonzero(is_light):
+        if system.sections[place].pin not in let_go:  # it is loose, and stays so
+            continue
         own, nodes = slice(3 * place, 3 * place + 3), system.nodes.parts[place]
-        rest[own], loose.status[nodes] = start.motion[own], OPEN
+        rest[own], loose.status[nodes] = (1.0 - back) * start.motion[own], OPEN
         loose.pressure[nodes] = loose.shear[nodes] = 0.0
     held, loose = system.resting(rest), replace(loose, rest=rest)
-    return accepted(held, loose, implicit_step(held, loose, load))
+    if loose.closed.any():
+        return accepted(held, loose, implicit_step(held, loose, load))
+    apart = solve_statuses(held, loose.status, loose.slip, load, loose.rest_gap)
+    return None if apart is None else accepted(held, loose, accept_solution(loose, apart, load))
 
 
 def _on_springs(system: PinsSystem, start: Configuration, load: np.ndarray, stiffness: float) -> Configuration | None:

@@ -79,3 +79,14 @@ def test_random_joints_meet_all_conditions_or_are_refused() -> None:
         for state in result:
             check_state(state)
     assert refused <= max(1, tried // 10), (refused, tried)
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("seed", [79, 191])
+def test_pins_that_only_weak_springs_press_let_go(seed: int) -> None:
+    """Where both edges that a loose pin touches come nearer, it must go back a little."""
+    joint, corners = random_joint(np.random.default_rng(seed))
+    result = solve_joint(joint, corners, nodes=24, harmonics=6)
+    assert result.snaps
+    for state in result:
+        check_state(state)
