@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
 
+from fastpin import figures
 from fastpin.assess.outputs import whole_document
 from fastpin.joints import Clamp, Joint, JointPin, JointPlate, JointResult, parse_joint, solve_joint
 from fastpin.lugs import fields, plates, several_holes
@@ -291,7 +292,7 @@ def test_a_wrong_clamp_is_refused_in_one_sentence(make: Any, words: str) -> None
 
 
 @pytest.mark.gate
-def test_text_and_json_tell_the_same_friction() -> None:
+def test_text_json_and_figure_tell_the_same_friction() -> None:
     case = parse_joint(CLAMPED)
     judged = report.judged(solve_joint(case.joint, case.corners, nodes=16, harmonics=8))
     text, document = report.describe(judged), whole_document(report.JOINT, judged, {}, title="")
@@ -306,3 +307,7 @@ def test_text_and_json_tell_the_same_friction() -> None:
     (line,) = [line.split() for line in text.split("\n") if line.split()[:2] == ["A", "sheet-cover"]]
     assert float(line[3]) == pytest.approx(100.0 * row["used"], rel=1e-3)
     assert "friction A sheet-cover.x" in text
+    figure = figures.plot_shares(judged.result)
+    heights = [np.max(line.get_ydata()) for line in figure.axes[0].lines]
+    assert any(height == pytest.approx(1e-3 * row["force"]) for height in heights)  # kN
+    assert "friction A sheet-cover" in [words.get_text() for each in figure.legends for words in each.get_texts()]
