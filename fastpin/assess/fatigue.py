@@ -178,11 +178,7 @@ def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
     name = f"fatigue of the {edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}"
     if math.isnan(spot.theta):
         return f"{name}: no damage"
-    failing = found.failure_probability(how.life)
-    parts = [f"median life {spot.life * 10.0**found.shift:.4g}"] if found.shift else []
-    parts += [] if math.isnan(failing) else [f"{failing:.3g} of the specimens fail within {how.life:.6g} {how.passes}"]
-    life = ", ".join([f"life {spot.life:.4g} {how.passes}", *parts])
-    parts = [f"{life}, damage {spot.damage:.4g} {_place(found)}"]
+    parts = [f"{life_words(found, how)}, damage {spot.damage:.4g} {_place(found)}"]
     parts += [f"normal of the plane {math.degrees(spot.plane):z.2f} deg from +x"]
     same: dict[frozenset[float], tuple[float, int, str]] = {}  # repeated states have the load points of the first ones
     for start, stop, times, done in zip(counted.start, counted.stop, counted.times, counted.damage, strict=True):
@@ -194,6 +190,16 @@ def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
         if share >= 0.5
     ]
     return "; ".join([f"{name}: {', '.join(parts)}", ", ".join(cycles), *_left_out(found)])
+
+
+def life_words(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
+    """Return words for the life at the hot spot, the median life, and the part that fails within the life asked for."""
+    parts, failing = [f"life {found.hot_spot.life:.4g} {how.passes}"], found.failure_probability(how.life)
+    if found.shift:
+        parts.append(f"median life {found.hot_spot.life * 10.0**found.shift:.4g}")
+    if not math.isnan(failing):
+        parts.append(f"{failing:.3g} of the specimens fail within {how.life:.6g} {how.passes}")
+    return ", ".join(parts)
 
 
 def edge_of(found: damage.SpectrumDamage | damage.Fatigue) -> str:

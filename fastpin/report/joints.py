@@ -220,10 +220,9 @@ def fatigue_lines(judged: Judged) -> list[str]:
         if math.isnan(spot.theta):
             cells.append((name, "no damage", "", ""))
             continue
-        median = f", median {spot.life * 10.0**found.shift:.4g}" if found.shift else ""
         where = point_words(found.problem, found.body, spot.theta, spot.depth, 2)
         mark = over_yield_words(over.get((pin, plate), {}), owner)
-        cells.append((name, f"life {spot.life:.4g} {how.passes}{median}", f"damage {spot.damage:.4g}", where + mark))
+        cells.append((name, fatigue.life_words(found, how), f"damage {spot.damage:.4g}", where + mark))
     head = f"fatigue over {fatigue.assessment_words(how)}, with the stresses at the load points:"
     return ["", head, *outputs.aligned(cells, "lrrl"), *_left_out(len(judged.damages), "longer lives")]
 

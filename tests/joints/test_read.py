@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -134,6 +135,11 @@ def test_text_and_json_tell_the_same_lives_and_margins() -> None:
     assert (
         f"A in sheet, plate: yield, von Mises {1e-6 * least['value']:.4g} MPa of 379 MPa {least['margin']:+.2f}" in text
     )
+    spread = replace(judged.damages[0].found, shift=1.0, scatter=0.3)
+    asked = judged._replace(how=FatigueAssessment(life=1e5), damages=[judged.damages[0]._replace(found=spread)])
+    failing = f"{spread.failure_probability(1e5):.3g} of the specimens fail within 100000 spectra"
+    words = f"life {first['life']:.4g} spectra, median life {10.0 * first['life']:.4g}, {failing} damage"
+    assert words in _words(report.describe(asked))
     unfinished = report.judged(judged.result, case.fatigue, is_complete=False)
     assert "fatigue: not known, the history has not come to its end" in report.describe(unfinished)
 
