@@ -37,6 +37,8 @@ class Operator:
     is_stored : bool
         Whether all entries are stored. If not, products with many columns are better made by the operator itself than
         from a copy of its entries.
+    is_quick : bool
+        Whether a product takes no longer than that of a few stored rows.
     by_distance : bool
         Whether the entries of equally spaced nodes depend on their distance, up to what bodies and drive add.
     matrix : ndarray, shape (2n, 2n), or None
@@ -45,6 +47,7 @@ class Operator:
 
     matrix: np.ndarray | None = None
     is_stored = False
+    is_quick = False
     by_distance = True
 
     def __init__(self, size: int) -> None:

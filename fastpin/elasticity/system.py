@@ -324,6 +324,10 @@ class System:
         """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""
         return self.operator @ tractions
 
+    def columns(self, *given: Any) -> Any:
+        """A tableau of this kind of system; None if it is :class:`fastpin.solver.tableau.Columns`."""
+        return None
+
     def part(self, nodes: np.ndarray) -> System:
         """The system of neighbouring `nodes`, shape (k,), in their order round the hole.
 

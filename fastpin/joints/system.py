@@ -1,9 +1,10 @@
 """The matrices of a joint of several pins and plates.
 
 An interface is a pin in the hole of one plate. Each is a :class:`fastpin.elasticity.system.System` of its own, of a pin
-in an infinite plate; a plate couples the interfaces of its holes through few harmonics. The unknown motions are, for
-each interface, the motion (c_x, c_y, omega) of the pin over the plate, and the motions of each plate that is not held.
-The conditions are the equilibrium of every pin and plate, and the coherence of a pin in its plates:
+in an infinite plate; a plate couples the interfaces of its holes through few harmonics, see
+:class:`fastpin.joints.ports.Ports`. The unknown motions are, for each interface, the motion (c_x, c_y, omega) of
+the pin over the plate, and the motions of each plate that is not held. The conditions are the equilibrium of every pin
+and plate, and the coherence of a pin in its plates:
 
     first plate of a pin    sum over its plates of t (F + e c) = force on the pin, for x and y
     each further plate      D_before - D + flexibility times the force between both plates = 0, for x and y
@@ -23,16 +24,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fastpin.bodies.compliance import basis
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.interfaces import TURN, Nodes
-from fastpin.elasticity.operator import DenseOperator
+from fastpin.elasticity.operator import LARGEST_DENSE, DenseOperator
 from fastpin.elasticity.system import Interface, System
 from fastpin.joints.faying import SIDES, SPREAD, FayingSurface, rim_basis, rows_of
+from fastpin.joints.ports import PortColumns, Ports
 from fastpin.lugs.several_holes import HolesCompliance
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, P, Q
@@ -41,6 +43,9 @@ from fastpin.model.problem import Problem
 CENTRING = 1e-6
 """Stiffness e of the springs that hold loose pins, times beta*. Forces change by as much. With 1e-7 a path was lost
 where a loose pin touches; with 1e-12 the first matrix is singular."""
+
+FAR = 1e-12
+"""Least displacement of a hole by the other ones that counts, in parts of its own compliance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,6 +141,8 @@ class PinsSystem(System):
         The part of ``motion_rows`` that the springs of loose pins give.
     faying : tuple of FayingSurface
         Their sides stand behind the nodes of the contacts.
+    ports : Ports or None
+        What passes between the interfaces; None with faying surfaces.
     """
 
     nodes: Nodes = field(kw_only=True)
@@ -144,6 +151,7 @@ class PinsSystem(System):
     integrals: tuple[np.ndarray, ...] = field(kw_only=True)
     springs: np.ndarray = field(kw_only=True)
     faying: tuple[FayingSurface, ...] = field(kw_only=True)
+    ports: Ports | None = field(kw_only=True)
 
     @property
     def is_toeplitz(self) -> bool:
@@ -190,6 +198,9 @@ class PinsSystem(System):
         for members in self.pins:
             found[3 * members[0] : 3 * members[0] + 3] = True
         return found
+
+    def columns(self, *given: Any) -> PortColumns | None:
+        return None if self.ports is None else PortColumns(self, self.ports, *given)
 
     def resting(self, rest: np.ndarray) -> PinsSystem:
         """The same system with springs that are slack at the motion `rest` (m,)."""
@@ -259,22 +270,23 @@ def build(
     beta = scales.displacement / force
     equilibrium, rows, springs, forces = _conditions(sections, alone, nodes, given, beta)
     rims += _faying_rims(faying, sections, plates, given, nodes, matrix, motion, loads)
+    is_stored = bool(faying) or size <= LARGEST_DENSE
     rubbing = slice(size + nodes.parts[-1].stop, 2 * size)
     equilibrium[:, rubbing] = motion[rubbing].T  # friction does work on the motions of plates
     for one, own, out, _ in rims:
-        plate = plates[one.plate]
-        unit = force / (one.problem.pair.plate.shear_modulus * scales.displacement)
+        plate, unit = plates[one.plate], force / (one.problem.pair.plate.shear_modulus * scales.displacement)
         for other, columns, _, into in rims:
-            if other.plate == one.plate:
-                block = plate.block(one.hole, other.hole)
-                matrix[np.ix_(own, columns)] += unit * (out @ (block @ into))
+            if other is one or (is_stored and other.plate == one.plate):
+                matrix[np.ix_(own, columns)] += unit * (out @ (plate.block(one.hole, other.hole) @ into))
         for of, name, place in given.columns:
             if of == one.plate:
                 loads[own, len(LOADS) + place] += unit * (out @ plate.column(name, one.hole))
+    ports = None if faying else _ports(sections, plates, nodes, matrix, motion, equilibrium, bases, beta)
     loose = [np.maximum(s * each.concentric_gap, 0.0) for s, each in zip(stretch, alone, strict=True)]
     return PinsSystem(
         problem=sections[0].problem, grid=nodes, scales=scales, rest_clearance=0.0,  # type: ignore[arg-type]
-        operator=DenseOperator(matrix), motion=motion, loads=loads, equilibrium=equilibrium, motion_rows=rows,
+        operator=DenseOperator(matrix) if ports is None or is_stored else ports, ports=ports,
+        motion=motion, loads=loads, equilibrium=equilibrium, motion_rows=rows,
         forces=forces, plate=0.0, drive=Drive(motion[:, :2], loads), nodes=nodes, sections=tuple(sections), given=given,
         integrals=tuple(each[1] for each in bases), springs=springs, faying=tuple(faying),
         friction=np.concatenate([*(each.friction for each in alone), np.repeat([s.limit for s in faying], SIDES)]),
@@ -310,6 +322,54 @@ def _faying_rims(
                 if moving.plate == one.plate:
                     motion[shear, number] += sign * (moving.at(one.at)[:2] @ SPREAD)
     return rims
+
+
+def _far_harmonics(sections: Sequence[PinSection], plates: Sequence[HolesCompliance]) -> list[np.ndarray]:
+    """What the other holes of a plate feel of each section, and what it feels of them: orthonormal, (2 + 4 K, r)."""
+    found, sizes = [], []
+    for each in sections:
+        plate = plates[each.plate]
+        blocks = [plate.block(each.hole, other) for other in range(plate.holes) if other != each.hole]
+        vectors, values, _ = np.linalg.svd(np.hstack([np.zeros_like(plate.block(0, 0)), *blocks]), full_matrices=False)
+        found.append(vectors)
+        sizes.append(int(np.count_nonzero(values > FAR)))
+    most = max(sizes)
+    return [np.pad(vectors[:, :size], ((0, 0), (0, most - size))) for vectors, size in zip(found, sizes, strict=True)]
+
+
+def _ports(
+    sections: Sequence[PinSection],
+    plates: Sequence[HolesCompliance],
+    nodes: Nodes,
+    matrix: np.ndarray,
+    motion: np.ndarray,
+    equilibrium: np.ndarray,
+    bases: Sequence[tuple[np.ndarray, np.ndarray]],
+    beta: float,
+) -> Ports:
+    """The ports of the sections: five integrals of the tractions, three motions, and the far harmonics."""
+    far = _far_harmonics(sections, plates)
+    count, modes, motions = len(sections), far[0].shape[1], motion.shape[1]
+    rows = np.array([nodes.rows(place) for place in range(count)])
+    size, sums = rows.shape[1], min(5, motions)
+    tables = np.zeros((count, size + sums + modes, size + 3 + modes))
+    places = np.arange(count)[:, None]
+    inputs = np.hstack([3 * places + np.arange(3), motions + modes * places + np.arange(modes)])
+    couplings = np.zeros((motions + count * modes, count, sums + modes))
+    for a, (one, (waves, integrals)) in enumerate(zip(sections, bases, strict=True)):
+        factors, sizes, passed = np.linalg.svd(equilibrium[:, rows[a]], full_matrices=False)
+        tables[a, :size, :size] = matrix[np.ix_(rows[a], rows[a])]
+        tables[a, :size, size : size + 3] = motion[rows[a], 3 * a : 3 * a + 3]
+        tables[a, :size, size + 3 :] = waves @ far[a] / (one.problem.pair.plate.shear_modulus * beta)
+        tables[a, size : size + sums, :size] = passed[:sums]
+        tables[a, size + sums :, :size] = far[a].T @ integrals
+        couplings[:motions, a, :sums] = factors[:, :sums] * sizes[:sums]
+        for b, other in enumerate(sections):
+            if other.plate == one.plate and b != a:
+                felt = slice(motions + b * modes, motions + (b + 1) * modes)
+                block = plates[one.plate].block(other.hole, one.hole)
+                couplings[felt, a, sums:] = -far[b].T @ block @ far[a]
+    return Ports(rows, tables, motions, inputs, couplings.reshape(len(couplings), -1))
 
 
 class _Conditions:

@@ -31,6 +31,8 @@ class Tableau(NamedTuple):
         With ``order``: the shear that comes with a unit of N at open nodes, 0 elsewhere.
     chunk : int
         Number of updates after which a block must be brought up to date before a column of it is used.
+    width : int
+        Number of columns in a block.
     """
 
     matrix: np.ndarray
@@ -44,6 +46,7 @@ class Tableau(NamedTuple):
     tied: np.ndarray
     drag: np.ndarray
     chunk: int
+    width: int
 
 
 class Contact(NamedTuple):

@@ -50,13 +50,15 @@ ENDLESS = 7  # more events than allowed
 UNBONDED = 8  # a node that must stick slips or opens
 
 # Slots of `counts`.
-UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, SETTLED, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7, 8
+UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, SETTLED, REPEATED, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
 
 # Slots of `sums`.
 TIME, DISSIPATION, WORK, SEAT_DISSIPATION = 0, 1, 2, 3
 
 # The row of the slip tally that only runs with wear have: pressure times slip distance.
 WEAR = 4
+
+MOST_REPEATED = 8  # rounds in which the same node alone changes: it stays neither open nor slipping, so it sticks
 
 VALUE_TOLERANCE = 1e-13  # gaps and reserves mu N - |T| below this part of the largest gap or bound are zero
 
@@ -85,7 +87,7 @@ def _column(tableau, updates, p, out):
             out[i] = matrix[i, p]
     else:
         _held_column(tableau, p, out)
-    first, factors = tableau.fresh[p // WIDTH], np.zeros(4)
+    first, factors = tableau.fresh[p // tableau.width], np.zeros(4)
     fours = updates - (updates - first) % 4
     for k in range(first, fours, 4):  # four in a pass: the column is read and written once
         for later in range(4):
@@ -115,7 +117,7 @@ def _column(tableau, updates, p, out):
 @inner
 def _stale(tableau, updates, p):
     """Whether the block of column p was never computed, or lacks a whole chunk of updates."""
-    return tableau.fresh[p // WIDTH] < updates - updates % tableau.chunk
+    return tableau.fresh[p // tableau.width] < updates - updates % tableau.chunk
 
 
 @inner
@@ -519,6 +521,7 @@ def follow(tableau, contact, load, queue, friction, fixed, typical, stop, most_e
 
         # Settle the statuses: friction first, then closing, then opening.
         if not settled:
+            before = queue.node[0] if counts[QUEUED] == 1 else -1
             queued = _friction_violators(contact, rates, friction, traction_tol, length_tol, queue)
             if queued > 1 and counts[ROUND] >= 12:  # all together did not settle: the lowest node alone
                 for k in range(1, queued):
@@ -530,8 +533,11 @@ def follow(tableau, contact, load, queue, friction, fixed, typical, stop, most_e
             counts[NEXT], counts[QUEUED] = 0, queued
             if queued > 0:
                 counts[ROUND] += 1
-                if counts[ROUND] > 4 * contact.status.size + 200:
+                counts[REPEATED] = counts[REPEATED] + 1 if queued == 1 and queue.node[0] == before else 0
+                if counts[REPEATED] > 2 * MOST_REPEATED or counts[ROUND] > 4 * contact.status.size + 200:
                     return CYCLING
+                if counts[REPEATED] > MOST_REPEATED and queue.status[0] == OPEN and friction[queue.node[0]] > 0.0:
+                    queue.status[0] = STICK
                 if queued > all_at_once:
                     return _change_all_at_once(contact, queue, queued, fixed)
                 continue

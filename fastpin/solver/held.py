@@ -222,6 +222,7 @@ class HeldColumns:
                 tied=np.empty(n),
                 drag=np.empty(n),
                 chunk=updates + 1,
+                width=WIDTH,
             )
         self.tableau = memory.held
         self._begin(table, 0)

@@ -24,7 +24,7 @@ from fastpin.solver.configuration import Configuration, Correction, snap_to_boun
 from fastpin.solver.held import FEW_NODES, HeldColumns, known_table
 from fastpin.solver.settling import settle
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
-from fastpin.solver.unknowns import DenseUnknowns, StickingRun
+from fastpin.solver.unknowns import StickingRun
 
 MOST_REBUILDS = 400
 """Rebuilds of the tableau in one piece of a step, and once more for each settling by Lemke's method, at most."""
@@ -100,7 +100,7 @@ class PathStep:
         self._all_at_once = max(32, n // 20)
         self._sample: slice | np.ndarray = slice(None)
         self._sampled: Operator | np.ndarray = system.operator
-        if n > FEW_NODES:
+        if n > FEW_NODES and not system.operator.is_quick:
             nodes = np.unique(np.linspace(0, n - 1, 16).astype(int))  # compared with the matrices after every chunk
             rows = np.r_[nodes, n + nodes]
             self._sample, self._sampled = rows, system.operator.entries(rows=rows)
@@ -118,7 +118,7 @@ class PathStep:
             self._first_status = now.status.copy()
         elif (unknowns := self._sticking_after_reversal()) is not None:
             now.status[unknowns.normal] = STICK
-            self._begin(unknowns)
+            self._begin()
         else:
             self._rebuild()
 
@@ -256,10 +256,21 @@ class PathStep:
         self._contact.touched[status != OPEN] = True
         self._rebuild()
 
-    def _begin(self, unknowns: StickingRun | DenseUnknowns) -> None:
-        """Begin a new tableau from the solvable system of the present statuses."""
+    def _begin(self) -> bool:
+        """Begin a new tableau from the present statuses. Returns whether the closed nodes hold the pin."""
+        given = self._contact, self.rate, self._memory, self._room
+        try:
+            columns = self.system.columns(*given)
+        except np.linalg.LinAlgError:
+            return False
+        if columns is None:
+            unknowns = self._memory.solvable(self.system, self.now.status)
+            if unknowns is None:
+                return False
+            columns = Columns(self.system, unknowns, *given)
+        self._columns = columns
         self._queue.counts[exchange.UPDATES] = 0
-        self._columns = Columns(self.system, unknowns, self._contact, self.rate, self._memory, self._room)
+        return True
 
     def _rebuild(self, all_at_once: bool = False) -> None:
         """Build the tableau of the present statuses from the matrices.
@@ -269,17 +280,16 @@ class PathStep:
         self.rebuilds += 1
         if self.rebuilds > MOST_REBUILDS * (1 + self.resettled):
             raise StepLostError(exchange.CYCLING, self.fraction)
-        unknowns, queue = self._memory.solvable(self.system, self.now.status), self._queue
-        if unknowns is None and all_at_once:
+        queue, is_held = self._queue, self._begin()
+        if not is_held and all_at_once:
             # After the change all at once nothing holds the pin: change one by one instead.
             changed = slice(0, queue.counts[exchange.QUEUED])
             self.now.status[queue.node[changed]] = queue.status[changed]
             self._all_at_once = self.now.status.size
             queue.counts[exchange.NEXT] = queue.counts[exchange.QUEUED] = 0
-            unknowns = self._memory.solvable(self.system, self.now.status)
-        if unknowns is None:
+            is_held = self._begin()
+        if not is_held:
             raise StepLostError(exchange.NO_SUPPORT, self.fraction)
-        self._begin(unknowns)
 
     def _drift(self) -> float:
         """Largest relative error of gap and slip at a sample of the nodes, from the matrices."""

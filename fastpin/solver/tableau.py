@@ -134,6 +134,7 @@ class Columns:
             tied=np.zeros(0),
             drag=np.zeros(0),
             chunk=CHUNK,
+            width=WIDTH,
         )
         self._tie(contact)
         self._tractions = TractionRows(system, basis.rows, contact)

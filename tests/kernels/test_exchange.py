@@ -91,6 +91,7 @@ def empty_tableau(matrix, rates):
         tied=np.zeros(0),
         drag=np.zeros(0),
         chunk=CHUNK,
+        width=WIDTH,
     )
 
 

@@ -1,0 +1,259 @@
+"""Interfaces that feel each other through few numbers only, their ports; and the tableau of such interfaces.
+
+The tractions of an interface act on all others through a few sums, the outputs: resultants, and the harmonics that the
+other holes of its plate feel. A few numbers move an interface from outside, the inputs: its motion, and harmonics from
+the other holes. Outputs and inputs of all interfaces are tied by one small set of equations,
+
+    [motion_rows, 0; 0, 1] @ (motion, harmonics) + couplings @ outputs = (forces, 0).
+
+So the tableau is a table for each interface, and the answers of these equations. A change of status is an update of
+rank one of one table, and of the answers.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fastpin.elasticity.operator import Operator
+from fastpin.elasticity.system import System
+from fastpin.kernels.arrays import Contact, Tableau
+from fastpin.kernels.exchange import CHUNK
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.runtime.extensions import blas, lapack
+from fastpin.runtime.products import add_product
+from fastpin.solver.tableau import Columns, TableauMemory, expected_ties
+from fastpin.solver.unknowns import SINGULAR
+
+
+class Ports(Operator):
+    """The operator of S interfaces of k nodes, each with p outputs and q inputs. Nothing between two of them is stored.
+
+    All is dimensionless.
+
+    Parameters
+    ----------
+    rows : ndarray of int, shape (S, 2k)
+        Rows of each interface among (N, T) of all nodes.
+    tables : ndarray, shape (S, 2k+p, 2k+q)
+        Map (N, T) and the inputs of an interface to its (h, s) and outputs.
+    motions : int
+        Number of motions; the harmonics follow them.
+    inputs : ndarray of int, shape (S, q)
+        Places of the inputs among the motions and harmonics.
+    couplings : ndarray, shape (g, S p)
+        Map the outputs of all interfaces to the g equations of motions and harmonics.
+
+    Attributes
+    ----------
+    place : ndarray of int, shape (2n,)
+        The place of each row of all nodes among the rows of the interfaces.
+    """
+
+    is_quick = True
+    by_distance = False
+
+    def __init__(
+        self, rows: np.ndarray, tables: np.ndarray, motions: int, inputs: np.ndarray, couplings: np.ndarray
+    ) -> None:
+        super().__init__(rows.size)
+        self.rows, self.tables, self.motions, self.inputs, self.couplings = rows, tables, motions, inputs, couplings
+        self.place = np.argsort(rows.ravel())
+
+    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
+        count, nodes = self.rows.shape
+        found = self.tables[:, :, :nodes] @ tractions[self.rows].reshape(count, nodes, -1)
+        felt = -self.couplings @ found[:, nodes:].reshape(self.couplings.shape[1], -1)
+        felt[: self.motions] = 0.0
+        moved = found[:, :nodes] + self.tables[:, :nodes, nodes:] @ felt[self.inputs]
+        return np.asarray(moved.reshape(self.size, -1)[self.place].reshape(tractions.shape))
+
+    def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        together = 256  # bounds the memory
+        for begin in range(0, columns.size, together):
+            part = columns[begin : begin + together]
+            unit = np.zeros((self.size, part.size))
+            unit[part, np.arange(part.size)] = 1.0
+            out[:, begin : begin + together] = (self @ unit)[rows]
+
+    def diagonal(self) -> np.ndarray:
+        own = np.arange(self.rows.shape[1])
+        return np.asarray(self.tables[:, own, own].ravel()[self.place])
+
+
+class PortColumns(Columns):
+    """The tableau of a system with ports, begun from the statuses of a contact.
+
+    Parameters
+    ----------
+    system : System
+    ports : Ports
+    contact, load_rate, memory, room
+        See :class:`Columns`.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If the closed nodes can't hold all pins.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        ports: Ports,
+        contact: Contact,
+        load_rate: np.ndarray,
+        memory: TableauMemory,
+        room: int | None = None,
+    ) -> None:
+        n, updates = system.grid.size, memory.left.shape[1] if room is None else room
+        self._system, self._ports, self._contact = system, ports, contact
+        self._updates = self._done = self._waiting = 0
+        self._latest: tuple[int, np.ndarray] | None = None  # the column that was asked for last, and what it moves
+        status = contact.status
+        self._coupling = np.where(np.abs(status) == 1, system.friction * status, 0.0)  # T = tau - coupling N
+        dependent = np.r_[status != OPEN, status == STICK]
+        self._tables = self._held(dependent)
+        self._answers = self._joined()
+        rows, columns = self._answers.shape
+        self._left, self._right = np.empty((rows, CHUNK)), np.empty((columns, CHUNK), order="F")
+        displaced = system.load_displacement(load_rate)
+        given = np.r_[np.where(dependent, -displaced, 0.0), system.load_forces(load_rate)]
+        rates = self.response(given, 0)
+        rates[: 2 * n] += np.where(dependent, 0.0, displaced)
+        self._tie_all(rates)
+        self.tableau = Tableau(
+            matrix=memory.matrix,
+            fresh=np.full(2 * n, -1),
+            left=memory.left[:, :updates],
+            source=np.empty(updates, dtype=np.int64),
+            slot=np.empty(updates, dtype=np.int64),
+            delta=np.empty(updates),
+            rates=rates,
+            order=np.zeros(0, dtype=np.int64),
+            tied=np.zeros(0),
+            drag=np.zeros(0),
+            chunk=1,
+            width=1,
+        )
+
+    def refresh(self, asked: int, updates: int) -> None:
+        """Compute the column `asked`, with all updates. `updates` is their number."""
+        self._catch_up(updates)
+        nodes = self._ports.rows.shape[1]
+        place, own = divmod(int(self._ports.place[asked]), nodes)
+        column = self._tables[place, :, own]
+        moved = -self._answered(self._outputs(place), column[nodes:])
+        self._latest = asked, moved
+        values = self._moved(moved)
+        values[place] += column[:nodes]
+        self.tableau.matrix[:, asked] = self._all_rows(values, moved)
+        self.tableau.fresh[asked] = updates
+
+    def response(self, given: np.ndarray, updates: int) -> np.ndarray:
+        self._catch_up(updates)
+        rows = self._ports.rows
+        own = (self._tables[:, :, : rows.shape[1]] @ given[rows][:, :, None])[:, :, 0]
+        moved = self._answered(slice(None), np.r_[-own[:, rows.shape[1] :].ravel(), given[2 * self._coupling.size :]])
+        return self._all_rows(own[:, : rows.shape[1]] + self._moved(moved), moved)
+
+    def _held(self, dependent: np.ndarray) -> np.ndarray:
+        """The tables of all interfaces with the pairs `dependent` (2n,) exchanged. The other ties are 0."""
+        tables, rows = self._ports.tables.copy(), self._ports.rows
+        half = rows.shape[1] // 2
+        tables[:, :, :half] -= self._coupling[rows[:, :half]][:, None] * tables[:, :, half : 2 * half]
+        for table, own in zip(tables, dependent[rows], strict=True):
+            held = np.flatnonzero(own)
+            columns, given = table[:, held], table[held]
+            inverse = np.linalg.inv(columns[held])
+            columns = columns @ inverse
+            table -= columns @ given
+            table[:, held], table[held] = columns, -inverse @ given
+            table[np.ix_(held, held)] = inverse
+        return tables
+
+    def _joined(self) -> np.ndarray:
+        """The motions and harmonics by outputs with the opposite sign, and by forces; (g, S p + m)."""
+        ports, rows, nodes = self._ports, self._system.motion_rows, self._ports.rows.shape[1]
+        matrix = np.eye(len(ports.couplings), order="F")
+        matrix[: len(rows), : len(rows)] = rows
+        for place, inputs in enumerate(ports.inputs):
+            matrix[:, inputs] += ports.couplings[:, self._outputs(place)] @ self._tables[place, nodes:, nodes:]
+        norm = float(lapack.dlange("1", matrix))
+        factors, pivots, info = lapack.dgetrf(matrix, overwrite_a=1)
+        if info != 0 or not np.isfinite(norm) or not lapack.dgecon(factors, norm)[0] > SINGULAR:
+            raise np.linalg.LinAlgError("nothing holds a pin or a plate")
+        right = np.hstack([ports.couplings, np.eye(len(matrix), len(rows))])
+        return np.ascontiguousarray(lapack.dgetrs(factors, pivots, right)[0])
+
+    def _outputs(self, place: int) -> slice:
+        """The outputs of an interface among all."""
+        count = self._tables.shape[1] - self._ports.rows.shape[1]
+        return slice(place * count, (place + 1) * count)
+
+    def _answered(self, columns: slice, given: np.ndarray) -> np.ndarray:
+        """The product of some columns of the answers and a vector."""
+        waiting = slice(0, self._waiting)
+        found = self._answers[:, columns] @ given
+        found += self._left[:, waiting] @ (given @ self._right[columns, waiting])
+        return np.asarray(found)
+
+    def _moved(self, moved: np.ndarray) -> np.ndarray:
+        """All dependent variables (S, 2k) by the motions and harmonics (g,)."""
+        nodes = self._ports.rows.shape[1]
+        return np.asarray((self._tables[:, :nodes, nodes:] @ moved[self._ports.inputs][:, :, None])[:, :, 0])
+
+    def _all_rows(self, values: np.ndarray, moved: np.ndarray) -> np.ndarray:
+        """The vector (2n+m,) from the values of the interfaces (S, 2k) and the motions."""
+        return np.concatenate([values.ravel()[self._ports.place], moved[: self._system.motions]])
+
+    def _tie_all(self, rates: np.ndarray) -> None:
+        """Tie the shear of open and sticking nodes to the pressure for the expected sense of slip."""
+        contact, rows, n = self._contact, self._ports.rows, self._coupling.size
+        stuck, is_open = contact.status == STICK, contact.status == OPEN
+        contact.tie[:] = np.where(stuck | is_open, expected_ties(contact, rates), contact.status)
+        self._coupling = self._system.friction * contact.tie
+        half = rows.shape[1] // 2
+        tied, drag = (np.where(nodes, self._coupling, 0.0)[rows[:, :half]] for nodes in (stuck, is_open))
+        self._tables[:, half : 2 * half] += tied[:, :, None] * self._tables[:, :half]
+        self._tables[:, :, :half] -= drag[:, None] * self._tables[:, :, half : 2 * half]
+        rates[n : 2 * n] += np.where(stuck, self._coupling * rates[:n], 0.0)
+
+    def _catch_up(self, updates: int) -> None:
+        """Make the updates of the tableau in the tables of their interfaces."""
+        done, self._done = self._done, updates
+        for update in range(done, updates):
+            source, slot = int(self.tableau.source[update]), int(self.tableau.slot[update])
+            node = max(source, slot)
+            place, own = divmod(int(self._ports.place[node]), self._ports.rows.shape[1])
+            if source == slot:
+                self._exchange(node, place, own)
+                continue
+            table, shear = self._tables[place], own + self._ports.rows.shape[1] // 2
+            change, self._coupling[node] = -2.0 * self._coupling[node], -self._coupling[node]
+            if slot < 0:  # the tie of a sticking node has turned round
+                table[shear] += change * table[own]
+            else:  # that of an open node
+                table[:, own] -= change * table[:, shear]
+                self._latest = None
+
+    def _exchange(self, pair: int, place: int, own: int) -> None:
+        """Exchange the members of a pair, which has the row `own` of an interface."""
+        nodes, table, inputs = self._ports.rows.shape[1], self._tables[place], self._ports.inputs[place]
+        column, row = table[:, own].copy(), table[own].copy()
+        pivot = column[own]
+        column[own] += 1.0
+        row[own] -= 1.0
+        if self._latest is not None and self._latest[0] == pair:
+            moved = -self._latest[1]
+        else:
+            moved = self._answered(self._outputs(place), column[nodes:])
+        self._latest = None
+        waiting, given = slice(0, self._waiting), row[nodes:]
+        by_row = given @ self._answers[inputs] + self._right[:, waiting] @ (given @ self._left[inputs, waiting])
+        blas.dger(-1.0 / pivot, row, column, a=table.T, overwrite_a=1)
+        self._left[:, self._waiting] = moved / (pivot - given @ moved[inputs])
+        self._right[:, self._waiting] = by_row
+        self._waiting += 1
+        if self._waiting == CHUNK:
+            add_product(self._answers.T, self._right, self._left.T)
+            self._waiting = 0
