@@ -30,7 +30,10 @@ JUMPS = (1e-6, 1e-4, 1e-3, 1e-2)
 NEGLIGIBLE, OF_SPRINGS = 1e-2, 10.0
 """Force of a contact that may be released, in parts of the largest one, and of that of the springs of loose pins."""
 
-BACK = (0.0, 1e-3, 1e-2, 1e-1)
+NOTHING = 1e-9
+"""Force that is rounding where all loads vanish, in parts of the largest load of the history."""
+
+BACK = (0.0, 1e-3, 1e-2, 1e-1, 1.0)
 """Parts of its way from the middle by which a released pin goes back: the edge that it touched may follow it."""
 
 MOST_SNAPS = 200
@@ -121,9 +124,11 @@ def _beyond(
     Lemke's method takes most of the time, so it comes last.
     """
     letting_go = [partial(_released, back=back) for back in BACK]
-    for way in (partial(finite_step, by_lemke=False), *letting_go, partial(creep, on_springs=_on_springs)):
-        for jump in JUMPS:
-            reached = min(done + jump, 1.0)
+    ways = [partial(finite_step, by_lemke=False), *letting_go, partial(creep, on_springs=_on_springs)]
+    if np.abs(system.passed(now.tractions)).max() <= NOTHING:
+        ways = [*letting_go, *ways]
+    for way in ways:
+        for reached in sorted({min(done + jump, 1.0) for jump in JUMPS}):
             found = way(system.resting(now.rest), now, before + reached * (after - before))
             if found is not None:
                 return found, reached
@@ -137,7 +142,7 @@ def _released(system: PinsSystem, start: Configuration, load: np.ndarray, back: 
     """
     forces = np.abs(system.passed(start.tractions)[:, :2]).max(axis=1)
     springs = CENTRING * float(np.abs((start.motion - start.rest)[: 3 * forces.size]).max())
-    is_light = forces <= max(NEGLIGIBLE * forces.max(), OF_SPRINGS * springs)
+    is_light = forces <= max(NEGLIGIBLE * forces.max(), OF_SPRINGS * springs, NOTHING)
     let_go = {system.sections[place].pin for place in np.flatnonzero(is_light & (forces > 0.0))}
     if not let_go:
         return None

@@ -90,3 +90,16 @@ def test_pins_that_only_weak_springs_press_let_go(seed: int) -> None:
     assert result.snaps
     for state in result:
         check_state(state)
+
+
+@pytest.mark.gate
+def test_a_neat_joint_with_friction_is_unloaded_after_reversed_loads() -> None:
+    """Where all loads vanish so do all tractions, and what is left of them is rounding."""
+    strap = JointPlate("strap", MATERIALS[0], 1.0, rectangle((-4.0, 15.0), (-4.0, 4.0)), {"right": "both"}, moves="x")
+    skin = replace(strap, name="skin", supports={"left": "both"}, moves="")
+    pins = tuple(JointPin(f"p{k}", 6.0 * k + 0j, MATERIALS[1], 1.0, ("skin", "strap"), 0.0, 0.3) for k in range(2))
+    loads = [{"strap.x": size * FORCE} for size in (1.0, -1.0, 1.0, 0.0)]
+    result = solve_joint(Joint((skin, strap), pins), loads, nodes=24, harmonics=6)
+    for state in result:
+        check_state(state)
+    np.testing.assert_allclose(result[-1].forces, 0.0, atol=1e-8 * FORCE)
