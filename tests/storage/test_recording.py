@@ -208,7 +208,7 @@ def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path
     """The coarse run is made to see the first step only."""
     from fastpin.solver import arc
 
-    monkeypatch.setattr(arc, "_outline", lambda problem, values: values[:1])
+    monkeypatch.setattr(arc, "outermost_corners", lambda problem, values: values[:1])
     problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
     history = LoadHistory([{"P": 1.0}, {"Q": 0.05}, {"Q": 0.6}, {"Q": 0.1}])
     expected = solve(problem, history, nodes=61)
