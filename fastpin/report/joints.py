@@ -364,9 +364,11 @@ CONTACT = (
 )  # fmt: skip
 """Outputs of a :class:`JointContact`."""
 
+NAMES = (Output("pin", "text"), Output("plate", "text"))
+"""Outputs of something where a pin goes through a plate."""
+
 LARGEST = (
-    Output("pin", "text"),
-    Output("plate", "text"),
+    *NAMES,
     Output("touched", "whole", optional=True),
     Output("force", "force"),
     *outputs.numbers("pressure hoop", "traction"),
@@ -391,8 +393,7 @@ FAYING = (
 
 
 RUBBED = (
-    Output("pin", "text"),
-    Output("plates", form=list_of(TEXT, 2)),
+    *FAYING[:2],  # the names
     *(Output(name, form=list_of(NUMBER, 2)) for name in ("force", "slip")),
     Output("dissipation", "energy"),
 )
@@ -400,7 +401,7 @@ RUBBED = (
 
 
 def _rubbed(state: JointState) -> list[dict[str, Any]]:
-    """The faying surfaces of a state, in printed units but for the energy."""
+    """The faying surfaces of a state: force and slip in printed units, energy in J."""
     unit = joint_units(state.joint)
     return [
         {
@@ -428,9 +429,6 @@ JOINT_STATE = (
     Output("residuals", form=map_of(NUMBER, "violations of the conditions of contact and equilibrium")),
 )  # fmt: skip
 """Outputs of a state of a joint."""
-
-NAMES = (Output("pin", "text"), Output("plate", "text"))
-"""Outputs of something where a pin goes through a plate."""
 
 BODY = (*NAMES, *fatigue.DAMAGE, Output("over_yield", optional=True))
 """Outputs of the damage of a plate or of a pin, where the pin goes through the plate."""

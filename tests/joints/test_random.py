@@ -94,7 +94,7 @@ def test_pins_that_only_weak_springs_press_let_go(seed: int) -> None:
 
 @pytest.mark.gate
 def test_a_neat_joint_with_friction_is_unloaded_after_reversed_loads() -> None:
-    """Where all loads vanish so do all tractions, and what is left of them is rounding."""
+    """Without loads the tractions are zero up to rounding."""
     strap = JointPlate("strap", MATERIALS[0], 1.0, rectangle((-4.0, 15.0), (-4.0, 4.0)), {"right": "both"}, moves="x")
     skin = replace(strap, name="skin", supports={"left": "both"}, moves="")
     pins = tuple(JointPin(f"p{k}", 6.0 * k + 0j, MATERIALS[1], 1.0, ("skin", "strap"), 0.0, 0.3) for k in range(2))
