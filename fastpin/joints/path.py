@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -123,11 +124,10 @@ def _beyond(
 
     Lemke's method takes most of the time, so it comes last.
     """
-    letting_go = [partial(_released, back=back) for back in BACK]
-    ways = [partial(finite_step, by_lemke=False), *letting_go, partial(creep, on_springs=_on_springs)]
-    if np.abs(system.passed(now.tractions)).max() <= NOTHING:
-        ways = [*letting_go, *ways]
-    for way in ways:
+    ways: list[Any] = [partial(_released, back=back) for back in BACK]
+    is_bare = float(np.abs(system.passed(now.tractions)).max()) <= NOTHING
+    ways.insert(len(ways) if is_bare else 0, partial(finite_step, by_lemke=False))
+    for way in (*ways, partial(creep, on_springs=_on_springs)):
         for reached in sorted({min(done + jump, 1.0) for jump in JUMPS}):
             found = way(system.resting(now.rest), now, before + reached * (after - before))
             if found is not None:

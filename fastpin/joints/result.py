@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from fastpin.cracks.growing import Growth, planned_growth
 from fastpin.damage.assessed import assessed_fatigue
 from fastpin.damage.spectrum import SpectrumDamage
 from fastpin.errors import InputError
-from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import Joint
 from fastpin.model import crack as crack_model
 from fastpin.model.assessment import FatigueAssessment, check_assessment
@@ -195,8 +194,7 @@ class JointResult(Sequence[JointState]):
         lug, pinned = self.joint.lug(pin, plate)
         outline, found = json.dumps(lug.document()), []
         for state in states:
-            hole = state.problem.plate_body
-            assert isinstance(hole, HoleInPlate)
+            hole: Any = state.problem.plate_body  # a HoleInPlate
             body = replace(hole, outline=outline, pinned=pinned)
             found.append(replace(state, problem=replace(state.problem, plate_body=body)))
         return found
