@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import COLOURS, MAX_NAMED, draw_grid, line, quantity
-from fastpin.joints import Joint, JointResult, JointState
+from fastpin.joints import Joint, JointPlate, JointResult, JointState
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.checks import instance, whole_number
 from fastpin.model.unit_systems import SI
@@ -30,7 +30,8 @@ def joint_of(result: JointResult, state: int = -1) -> Plot:
     """Draw every plate with its holes at one state: hoop stress, contact, and the force of each pin.
 
     The ring round a hole shows the hoop stress on its edge. Thick arcs on the edge are in contact: stick is black, slip
-    is orange. Arrows are the forces of the pins on the plate. Lengths are in millimetres, to scale. `state` is the
+    is orange. Arrows are the forces of the pins on the plate. Of slices, the
+    one with the largest hoop stress is drawn at each hole. Lengths are in millimetres, to scale. `state` is the
     number of the state, from 0; negative numbers count from the end.
     """
     instance("result", result, JointResult, "a JointResult")
@@ -86,7 +87,8 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
     factor, unit = of_joint["traction"].scale([float(np.abs(hoop).max()) for hoop in hoops])
     largest = factor * max(float(np.abs(hoop).max()) for hoop in hoops) or 1.0
     norm = TwoSlopeNorm(0.0, -largest, largest)
-    longest = max(float(np.hypot(*state.forces.T).max()), 1e-300)
+    on_plates = [state.force(pin.name, plate.name) for plate in joint.plates for pin in joint.pins_of(plate)]
+    longest = max(*(float(np.hypot(*force)) for force in on_plates), 1e-300)
     for place, (plate, panel) in enumerate(zip(joint.plates, sheet.axes[:, 0], strict=True)):
         for part in plate.outline:
             z = size.factor * part.at(np.linspace(0.0, 1.0, 61))
@@ -95,9 +97,9 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
         for hole in plate.holes:
             z = size.factor * (hole.centre + hole.radius * np.exp(1j * theta))
             panel.plot(z.real, z.imag, color="0.2", linewidth=1.2)
-        for k, (pin, of) in enumerate(joint.sections):
-            if of is plate:
-                _draw_hole(panel, state, k, size.factor * pin.at, theta, factor * hoops[k], norm, longest)
+        for pin in joint.pins_of(plate):
+            k = max(joint.places(pin.name, plate.name), key=lambda k: float(np.abs(hoops[k]).max()))
+            _draw_hole(panel, state, k, plate, theta, factor * hoops[k], norm, longest)
         panel.set_aspect("equal")
         panel.set_xlim(size.factor * left, size.factor * right)
         panel.set_ylim(size.factor * bottom, size.factor * top)
@@ -105,6 +107,7 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
         moved = state.moved[place]
         by = ", ".join(f"{size.factor * each:.3g}" for each in moved[:2])
         words = f", moved by {by} {size.name}" if plate.moves else ""
+        words += f"; at each hole the most stressed of {plate.slices} slices" if plate.slices > 1 else ""
         panel.set_title(f"{plate.name}{words}", fontsize=8.5, loc="left", parse_math=False)
     sheet.axes[-1, 0].set_xlabel(quantity("x", size.name))
     mappable = sheet.axes[0, 0].collections[0]
@@ -122,7 +125,7 @@ def _draw_hole(
     panel: Axes,
     state: JointState,
     place: int,
-    centre: complex,
+    plate: JointPlate,
     theta: np.ndarray,
     hoop: np.ndarray,
     norm: Any,
@@ -130,7 +133,7 @@ def _draw_hole(
 ) -> None:
     """Draw one hole: the ring of the hoop stress, the zones of contact, the force and the name of its pin."""
     contact, (pin, _) = state.contacts[place], state.joint.sections[place]
-    radius = _length(state.joint).factor * pin.radius
+    radius, centre = _length(state.joint).factor * pin.radius, _length(state.joint).factor * pin.at
     ring = centre + radius * np.multiply.outer([1.0, RING], np.exp(1j * theta))
     panel.pcolormesh(
         ring.real, ring.imag, np.vstack([hoop, hoop]), cmap="RdBu_r", norm=norm, shading="gouraud", rasterized=True
@@ -143,7 +146,7 @@ def _draw_hole(
             arc = centre + 0.97 * radius * np.exp(1j * np.linspace(angle - half, angle + half, 5))
             colour = "black" if status == STICK else COLOURS[1]
             panel.plot(arc.real, arc.imag, color=colour, linewidth=3.0, solid_capstyle="butt")
-    force = complex(*state.forces[place]) / longest
+    force = complex(*state.force(pin.name, plate.name)) / longest
     if abs(force) > 0.02:
         head = centre + 0.8 * radius * force
         style: Any = {"arrowstyle": "-|>", "color": "black", "linewidth": 1.2, "shrinkA": 0.0, "shrinkB": 0.0}
@@ -163,8 +166,7 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
     sheet = look.sheet([2.6])
     panel = sheet.axes[0, 0]
     forces = {
-        pin.name: [float(np.hypot(*state.forces[joint.place(pin.name, pin.plates[0])])) for state in result]
-        for pin in joint.pins
+        pin.name: [float(np.hypot(*state.force(pin.name, pin.plates[0]))) for state in result] for pin in joint.pins
     }
     forces |= {
         f"friction {surface}": [float(np.hypot(*state.faying[k].force)) for state in result]

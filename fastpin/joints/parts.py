@@ -5,11 +5,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from fastpin.errors import InputError
+from fastpin.joints.bending import Coherence, beam, springs
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad
 from fastpin.model import checks, unit_systems
 from fastpin.model.loads import LOADS, REMOTE
@@ -22,6 +23,12 @@ MOST_PINS, MOST_PLATES = 40, 20
 
 MOVES = {"": (), "x": (1.0 + 0j,), "y": (1j,), "xy": (1.0 + 0j, 1j), "free": (1.0 + 0j, 1j, 0j)}
 """Directions in which a plate may move, by the word; 0 is a rotation."""
+
+MOST_SLICES = 40
+"""Most slices of a plate."""
+
+BEAM = "beam"
+"""The flexibility of a pin that bends as a beam."""
 
 LEAST_PITCH = 1.1
 """Least distance of the centres of two holes, in diameters. Nearer ones need more harmonics than are taken."""
@@ -54,6 +61,10 @@ class JointPlate:
     loads : sequence of PartLoad
         Tractions on parts of the outline, as in a lug. The load is called "name.sxx", "name.syy" or "name.sxy". An
         infinite plate has these three loads as remote stresses, Pa.
+    slices : int
+        Number of equal slices across the thickness, each with a contact of its own with every pin. They are called
+        "name.1" and so on, in the order of the plates of a pin, and move together. In a plate with one pin every slice
+        stretches by itself, as far as its supports. With several pins all slices stretch alike, but for the contacts.
 
     Raises
     ------
@@ -69,11 +80,13 @@ class JointPlate:
     moves: str = ""
     holes: tuple[Hole, ...] = ()
     loads: tuple[PartLoad, ...] = ()
+    slices: int = 1
 
     def __post_init__(self) -> None:
         checks.check_fields(self, _name, "name")
         checks.instance("material", self.material, Material, "a Material")
         checks.check_fields(self, checks.number, "thickness", LEAST_RADIUS, MOST_RADIUS)
+        checks.check_fields(self, checks.whole_number, "slices", 1, MOST_SLICES)
         checks.set_fields(self, outline=tuple(checks.instances("outline", self.outline, Part, "a list of parts")))
         checks.set_fields(self, holes=tuple(checks.instances("holes", self.holes, Hole, "a list of holes")))
         checks.set_fields(self, loads=tuple(checks.instances("loads", self.loads, PartLoad, "a list of loads")))
@@ -94,6 +107,16 @@ class JointPlate:
     def is_infinite(self) -> bool:
         """Whether the plate has no outline."""
         return not self.outline
+
+    @cached_property
+    def across(self) -> tuple[JointPlate, ...]:
+        """Its slices as plates, in their order; the plate itself if it has one."""
+        if self.slices == 1:
+            return (self,)
+        found = [replace(self, thickness=self.thickness / self.slices, slices=1) for _ in range(self.slices)]
+        for number, one in enumerate(found, start=1):
+            checks.set_fields(one, name=f"{self.name}.{number}")  # no plate that is given has a dot
+        return tuple(found)
 
     @property
     def load_names(self) -> tuple[str, ...]:
@@ -194,11 +217,15 @@ class JointPin:
         Radial clearance, m; one for each plate if they differ. Negative: an interference fit.
     friction : float or mapping of str to float
         Coefficient of friction, for each plate if they differ.
-    flexibility : float
+    flexibility : float or "beam"
         Displacement of the pin in one plate over that in the next, per force between them, m/N: shear and bending of
-        the pin. 0 is a rigid pin. :func:`tate_rosenfeld` has a handbook formula.
+        the pin. 0 is a rigid pin. :func:`tate_rosenfeld` has a handbook formula. "beam": a Timoshenko beam through all
+        slices of its plates, which lie on one another in their order.
     clamp : Clamp, optional
         The clamp-up of its plates.
+    heads : {"free", "held"} or float
+        Of a beam: its ends turn freely, or do not turn, or by the angle of a moment: N m/rad. It is kept as a number,
+        0 or infinite.
 
     Raises
     ------
@@ -213,8 +240,9 @@ class JointPin:
     plates: tuple[str, ...]
     clearance: float | Mapping[str, float] = 0.0
     friction: float | Mapping[str, float] = 0.0
-    flexibility: float = 0.0
+    flexibility: float | Literal["beam"] = 0.0
     clamp: Clamp | None = None
+    heads: Any = 0.0
 
     def __post_init__(self) -> None:
         checks.check_fields(self, _name, "name")
@@ -227,7 +255,13 @@ class JointPin:
             raise InputError("plates", f"pin {self.name} goes through no plate")
         if len(set(self.plates)) < len(self.plates):
             raise InputError("plates", f"pin {self.name} goes through a plate twice")
-        checks.check_fields(self, checks.not_negative, "flexibility")
+        if isinstance(self.flexibility, str):
+            checks.check_fields(self, checks.choice, "flexibility", (BEAM,))
+        else:
+            checks.check_fields(self, checks.not_negative, "flexibility")
+        checks.check_fields(self, _heads, "heads")
+        if self.heads and self.flexibility != BEAM:
+            raise InputError("heads", f'needs a pin that bends, flexibility = "{BEAM}"')
         if self.clamp is not None:
             checks.instance("clamp", self.clamp, Clamp, "a Clamp")
             if len(self.plates) == 1:
@@ -245,7 +279,8 @@ class JointPin:
                 checks.check_fields(self, checks.number, name)
 
     def value_in(self, name: str, plate: str) -> float:
-        """The clearance or the friction in a plate."""
+        """The clearance or the friction in a plate, or in a slice."""
+        plate = whole_name(checks.string("plate", plate))
         checks.known_name("plate", plate, self.plates)
         value = getattr(self, checks.choice("name", name, ("clearance", "friction")))
         return float(value[plate] if isinstance(value, Mapping) else value)
@@ -311,10 +346,22 @@ class Joint:
                 raise InputError("moves", f"{words}: under a net force an infinite plate moves without limit")
         for pin, plate in self.sections:
             self.problem(pin, plate)
+        for pin in self.pins:
+            self._check_slices(pin)
+
+    def _check_slices(self, pin: JointPin) -> None:
+        """Check that a pin can go through the slices of its plates."""
+        sliced = next((plate.name for plate in self.plates if plate.name in pin.plates and plate.slices > 1), None)
+        if sliced is not None and pin.clamp is not None:
+            raise InputError("clamp", f"pin {pin.name} can't clamp {sliced}, which has slices")
+        least = 2 if pin.heads else 3
+        if pin.flexibility == BEAM and sum(one is pin for one, _ in self.sections) < least:
+            words = f"pin {pin.name} is a beam and needs {least} slices in all its plates"
+            raise InputError("slices", f"{words}, or heads" if least == 3 else words)
 
     def _check_holes(self, plate: JointPlate) -> None:
         """Check that the pinned holes of a plate keep apart and lie inside it."""
-        through = [pin for pin in self.pins if plate.name in pin.plates]
+        through = self.pins_of(plate)
         if not through:
             raise InputError("plates", f"no pin goes through the plate {plate.name}")
         if plate.floats and len(through) < 2:
@@ -335,9 +382,9 @@ class Joint:
 
     @cached_property
     def sections(self) -> tuple[tuple[JointPin, JointPlate], ...]:
-        """Every pin in each of its plates: the interfaces, pin by pin."""
-        by_name = {plate.name: plate for plate in self.plates}
-        return tuple((pin, by_name[name]) for pin in self.pins for name in pin.plates)
+        """Every pin in each slice of each of its plates: the interfaces, pin by pin."""
+        by_name = {plate.name: plate.across for plate in self.plates}
+        return tuple((pin, one) for pin in self.pins for name in pin.plates for one in by_name[name])
 
     @cached_property
     def faying(self) -> tuple[Faying, ...]:
@@ -346,13 +393,40 @@ class Joint:
         return tuple(Faying(pin.name, clamp, *pair) for pin, clamp in clamps for pair in itertools.pairwise(pin.plates))
 
     def place(self, pin: str, plate: str) -> int:
-        """The place of a pin in a plate among the sections. Unknown names raise :class:`InputError`."""
+        """The place of a pin in a plate, or a slice, among the sections. Unknown names raise :class:`InputError`."""
+        found = self.places(pin, plate)
+        if len(found) > 1:
+            first, last = (self.sections[at][1].name for at in (found[0], found[-1]))
+            raise InputError("plate", f"{plate} has slices: name one of {first} to {last}")
+        return found[0]
+
+    def places(self, pin: str, plate: str) -> list[int]:
+        """The places of a pin in a slice, or in all slices of a plate, among the sections.
+
+        Unknown names raise :class:`InputError`.
+        """
         checks.known_name("pin", pin, [each.name for each in self.pins])
-        checks.known_name("plate", plate, [each.name for each in self.plates])
-        for place, (one, other) in enumerate(self.sections):
-            if (one.name, other.name) == (pin, plate):
-                return place
-        raise InputError("plate", f"pin {pin} does not go through {plate}")
+        checks.known_name("plate", whole_name(checks.string("plate", plate)), [each.name for each in self.plates])
+        own = [(at, other.name) for at, (one, other) in enumerate(self.sections) if one.name == pin]
+        if not (own := [(at, name) for at, name in own if whole_name(name) == whole_name(plate)]):
+            raise InputError("plate", f"pin {pin} does not go through {whole_name(plate)}")
+        if found := [at for at, name in own if plate in (name, whole_name(name))]:
+            return found
+        names = f"{own[0][1]} to {own[-1][1]}" if len(own) > 1 else "none"
+        raise InputError("plate", f"the slices of {whole_name(plate)} are {names}, not {checks.as_toml(plate)}")
+
+    def pins_of(self, plate: JointPlate) -> list[JointPin]:
+        """The pins that go through a plate."""
+        return [pin for pin in self.pins if whole_name(plate.name) in pin.plates]
+
+    def coherence(self, pin: JointPin) -> Coherence:
+        """What ties the sections of a pin to one another, SI."""
+        of = [next(plate for plate in self.plates if plate.name == name) for name in pin.plates]
+        if isinstance(pin.flexibility, str):
+            edges = list(itertools.accumulate((one.thickness for plate in of for one in plate.across), initial=0.0))
+            return beam(pin.material, pin.radius, edges, of[0].slices, pin.heads)
+        soft = [0.0 if number else pin.flexibility for plate in of for number in range(plate.slices)]
+        return springs(soft[1:])
 
     def lug(self, pin: str, plate: str) -> tuple[Lug, tuple[str, ...]]:
         """A plate as a lug round the hole of a pin, and the names of its further pinned holes.
@@ -362,10 +436,13 @@ class Joint:
         InputError
             If a name is unknown, or the plate is infinite.
         """
-        own, of = self.sections[self.place(pin, plate)]
+        if whole_name(checks.string("plate", plate)) != plate:
+            raise InputError("plate", f"{plate} is a slice: its stress is known near its holes only")
+        own, _ = self.sections[self.places(pin, plate)[0]]
+        of = next(each for each in self.plates if each.name == plate)
         if of.is_infinite:
             raise InputError("plate", f"{plate} is infinite: give it an outline, and its stress is known everywhere")
-        others = {other.name: other.at for other, through in self.sections if through is of and other is not own}
+        others = {other.name: other.at for other in self.pins_of(of) if other is not own}
         return of.lug({own.name: own.at} | others, self.radius, self.plane)
 
     @cached_property
@@ -425,6 +502,24 @@ def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], 
     shear = 4.0 * (a + b) / (9.0 * pin.shear_modulus * area)
     bending = (a**3 + 5.0 * a * a * b + 5.0 * a * b * b + b**3) / (40.0 * pin.E * inertia)
     return shear + bending
+
+
+def whole_name(plate: str) -> str:
+    """The name of a plate from its own, or from that of a slice."""
+    return plate.partition(".")[0]
+
+
+def _heads(field_: str, value: object) -> float:
+    """Check the stiffness of heads: a word or N m/rad."""
+    words = {"free": 0.0, "held": math.inf}
+    if isinstance(value, str) and value in words:
+        return words[value]
+    if value == math.inf:
+        return math.inf
+    try:
+        return checks.not_negative(field_, value)
+    except InputError as error:
+        raise InputError(field_, f'{error.reason}; or "free" or "held"') from None
 
 
 def _name(field_: str, value: object) -> str:

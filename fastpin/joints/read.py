@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from fastpin.casefile.beside import read_assessment, read_crack
 from fastpin.casefile.lug import limits_of, point_of
@@ -40,8 +40,19 @@ JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8
 
 JOINT_KEYS: dict[str, tuple[str, ...]] = {
     "joint": ("plane", "nodes", "harmonics", "repeat"),
-    "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves"),
-    "pin": ("name", "at", *MATERIAL_KEYS, "diameter", "plates", "clearance", "friction", "flexibility", "clamp"),
+    "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves", "slices"),
+    "pin": (
+        "name",
+        "at",
+        *MATERIAL_KEYS,
+        "diameter",
+        "plates",
+        "clearance",
+        "friction",
+        "flexibility",
+        "heads",
+        "clamp",
+    ),
     "load": (),
     "fatigue": BESIDE["fatigue"].keys,
     "crack": ("pin", "plate", *(key for key in BESIDE["crack"].keys if key not in ("body", "place"))),
@@ -52,7 +63,7 @@ _KINDS: dict[str, Any] = {
     "plate": MATERIAL | of("length", "thickness", "x", "y", "start") | {"parts": of("length", "to", "through")},
     "pin": MATERIAL
     | of("length", "at", "diameter")
-    | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility"}
+    | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility", "heads": "moment"}
     | {"clamp": {"force": "force", "flexibility": "flexibility"}},
     "fatigue": CASE["fatigue"],
     "crack": CASE["crack"],
@@ -179,6 +190,8 @@ def _plate(source: CaseText, block: Section) -> JointPlate | None:
         return None
     outline = _outline(block)
     values = {"name": block.value("name"), "thickness": block.value("thickness"), "moves": block.value("moves") or ""}
+    if "slices" in block:
+        values["slices"] = block.value("slices")
     if material is None or outline is None or values["name"] is None or values["thickness"] is None:
         return None
     return _made(block, JointPlate, **values, material=material, outline=outline, supports=supports)
@@ -242,20 +255,22 @@ def _pins(source: CaseText, block: Section, plates: list[JointPlate | None]) -> 
         return [None]
     common = {"material": material, "radius": 0.5 * diameter, "plates": through, "flexibility": flexibility}
     common["clamp"] = clamp
-    for key in ("clearance", "friction"):
+    for key in ("clearance", "friction", "heads"):
         common[key] = block.value(key) if key in block else 0.0
     return [_made(block, JointPin, name=name, at=at, **common) for name, at in zip(names, places, strict=True)]
 
 
 def _flexibility(
     block: Section, material: Any, diameter: float, through: list[str], plates: list[JointPlate | None]
-) -> float | None:
-    """The flexibility of a pin, m/N; None if it is wrong (reported)."""
+) -> float | Literal["beam"] | None:
+    """The flexibility of a pin, m/N, or that it is a beam; None if it is wrong (reported)."""
     given = block.value("flexibility")
     if not isinstance(given, str):
         return block.checked("flexibility", number, 0.0) if given is not None else 0.0
-    if block.checked("flexibility", choice, ("rigid", "tate-rosenfeld")) is None:
+    if block.checked("flexibility", choice, ("rigid", "tate-rosenfeld", "beam")) is None:
         return None
+    if given == "beam":
+        return "beam"
     by_name = {plate.name: plate for plate in plates if plate is not None}
     of = [by_name[name] for name in through if name in by_name]
     if given == "rigid" or len(of) < 2:

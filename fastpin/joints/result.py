@@ -16,10 +16,10 @@ from fastpin.cracks.growing import Growth, planned_growth
 from fastpin.damage.assessed import assessed_fatigue
 from fastpin.damage.spectrum import SpectrumDamage
 from fastpin.errors import InputError
-from fastpin.joints.parts import Joint
+from fastpin.joints.parts import Joint, whole_name
 from fastpin.model import crack as crack_model
 from fastpin.model.assessment import FatigueAssessment, check_assessment
-from fastpin.model.checks import check_callable, instance, known_name, true_or_false
+from fastpin.model.checks import check_callable, instance, known_name, string, true_or_false
 from fastpin.model.crack import CrackGrowth
 from fastpin.states.extremes import KeptStates, find_extremes
 from fastpin.states.margins import Margin, static_margins
@@ -85,7 +85,7 @@ class JointState:
         what the pin passes on to this plate. Slip counts from the place where the pin, straight from the middle, first
         rested on the hole. Work and energy are NaN: they belong to the whole joint.
     forces : ndarray, shape (sections, 2)
-        Force of the pin on the plate along x and y, N.
+        Force of the pin on the plate, or on the slice, along x and y, N.
     moved : ndarray, shape (plates, 3)
         Displacement of the supports of each plate along x and y, m, and its rotation, rad; 0 where they are fixed. Of a
         plate that is free it is the mean motion of the outline, at the place of its first pin.
@@ -106,12 +106,19 @@ class JointState:
     faying: tuple[FayingState, ...] = ()
 
     def __getitem__(self, names: tuple[str, str]) -> State:
-        """The contact of a pin in a plate, by both names: ``state["A", "skin"]``."""
+        """The contact of a pin in a plate, by both names: ``state["A", "skin"]``, or ``state["A", "lug.1"]``."""
         return self.contacts[self.joint.place(*names)]
 
     def __repr__(self) -> str:
         acting = ", ".join(f"{name} {value:g}" for name, value in self.load.items() if value) or "no load"
         return f"<JointState at corner {self.step}: {acting}>"
+
+    def force(self, pin: str, plate: str) -> np.ndarray:
+        """Force of a pin on a plate with all its slices, or on one slice, along x and y, N.
+
+        Unknown names raise :class:`InputError`.
+        """
+        return np.asarray(self.forces[self.joint.places(pin, plate)].sum(axis=0))
 
     @property
     def moments(self) -> np.ndarray:
@@ -120,15 +127,14 @@ class JointState:
         return np.array([each.load["M"] for each in self.contacts]) * thickness
 
     def shares(self, plate: str) -> dict[str, float]:
-        """The part of the force that the plate takes from each pin, by name, along the sum of these forces.
+        """The part of the force on a plate or a slice that each pin brings, by name, along the sum of these forces.
 
         NaN where the pins do not load the plate together. Friction of faying surfaces does not count. An unknown plate
         raises :class:`InputError`.
         """
-        known_name("plate", plate, [each.name for each in self.joint.plates])
-        found = {
-            pin.name: self.forces[place] for place, (pin, of) in enumerate(self.joint.sections) if of.name == plate
-        }
+        known_name("plate", whole_name(string("plate", plate)), [each.name for each in self.joint.plates])
+        pins = [pin.name for pin in self.joint.pins if whole_name(plate) in pin.plates]
+        found = {pin: self.force(pin, plate) for pin in pins}
         whole = np.sum(list(found.values()), axis=0)
         size = float(whole @ whole)
         largest = max(float(force @ force) for force in found.values())

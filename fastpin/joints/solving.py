@@ -12,7 +12,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.joints.faying import FayingSurface
-from fastpin.joints.parts import MOVES, Joint, JointPlate
+from fastpin.joints.parts import MOVES, Joint, JointPlate, whole_name
 from fastpin.joints.path import follow, unloaded
 from fastpin.joints.result import JointResult, JointState
 from fastpin.joints.states import StateMaker
@@ -162,12 +162,18 @@ def _plate_compliance(
     joint: Joint, plate: JointPlate, harmonics: int | None, report: Callable[[float], None]
 ) -> HolesCompliance:
     """The compliance of the pinned holes of a plate. That of an outline takes seconds, and is kept for equal plates."""
-    pins, radius = [pin for pin, of in joint.sections if of is plate], joint.radius
+    pins, radius = joint.pins_of(plate), joint.radius
     report(0.0)
     if plate.is_infinite:
         places, kolosov = np.array([pin.at for pin in pins]) / radius, plate.material.kolosov(joint.plane)
         return holes_in_infinite_plate(kolosov, places, harmonics or harmonics_needed(places))
-    key = replace(plate, name="plate", thickness=1.0), tuple(pin.at for pin in pins), radius, joint.plane, harmonics
+    key = (
+        replace(plate, name="plate", thickness=1.0, slices=1),
+        tuple(pin.at for pin in pins),
+        radius,
+        joint.plane,
+        harmonics,
+    )
     if key in _KEPT:
         return _KEPT[key]
     lug, pinned = joint.lug(pins[0].name, plate.name)
@@ -201,18 +207,16 @@ def _joint_system(
     places = {plate.name: k for k, plate in enumerate(joint.plates)}
     pins = {pin.name: k for k, pin in enumerate(joint.pins)}
     beta = joint.problem(*joint.sections[0]).surfaces.beta_star
-    first = {plate.name: pin.at for pin, plate in reversed(joint.sections)}
-    holes, sections = dict.fromkeys(places, 0), []
+    through, sections = [joint.pins_of(plate) for plate in joint.plates], []
     for pin, plate in joint.sections:
-        is_first = plate.name == pin.plates[0]
+        place = places[whole_name(plate.name)]
+        at = (pin.at - through[place][0].at) / radius
         sections.append(
             PinSection(
-                pins[pin.name], places[plate.name], holes[plate.name], (pin.at - first[plate.name]) / radius,
-                joint.problem(pin, plate),
-                plate.thickness / thick, 0.0 if is_first else pin.flexibility * thick / beta,
+                pins[pin.name], place, through[place].index(pin), at, joint.problem(pin, plate),
+                plate.thickness / thick, joint.plates[place].slices,
             )
         )  # fmt: skip
-        holes[plate.name] += 1
     clearances = np.array([each.problem.clearance for each in sections])
     stresses = np.array([joint.is_stress(name) for name in names])
     sizes = np.abs(values).max(axis=0) * np.where(stresses, radius, 1.0 / thick)
@@ -239,5 +243,6 @@ def _joint_system(
         play = sum(max(clearances[end], 0.0) for end in (one, other)) / (force * beta)
         limit, soft = clamp.limit / (force * thick), clamp.flexibility * thick / beta
         faying.append(FayingSurface((one, other), limit, soft, float(play)))
-    system = build(sections, plates, given, [Grid.circle(nodes, BOTTOM)] * len(sections), force, faying)
+    coherence = [joint.coherence(pin).scaled(thick / beta) for pin in joint.pins]
+    system = build(sections, plates, given, [Grid.circle(nodes, BOTTOM)] * len(sections), force, coherence, faying)
     return system, np.where(stresses, force / radius, force * thick)

@@ -117,14 +117,17 @@ class StateMaker:
         matrix = plate.block(section.hole, section.hole).copy()
         matrix[np.abs(matrix) < ROUNDED] = 0.0
         loads, on_holes = np.zeros(len(COLUMNS)), np.zeros((plate.holes, len(matrix)))
+        of_slices = np.zeros(len(matrix))  # mean tractions of all slices here, less those of this one
         for other, nodes, integrals in zip(system.sections, system.nodes.parts, system.integrals, strict=True):
-            if other.plate == section.plate and other.hole != section.hole:
-                on_holes[other.hole] += integrals @ np.concatenate([now.pressure[nodes], now.shear[nodes]])
+            own = float(other is section)  # the matrix of the hole knows its own tractions
+            if felt := section.felt(other, plate.holes) - own:
+                onto = of_slices if other.hole == section.hole else on_holes[other.hole]
+                onto += felt * (integrals @ np.concatenate([now.pressure[nodes], now.shear[nodes]]))
         for surface, sides in zip(system.faying, system.sides, strict=True):
             for other, sign in ((system.sections[at], sign) for at, sign in surface.signs):
                 if other.plate == section.plate:
                     on_holes[other.hole] += rim_basis(len(matrix), sign, other.thickness)[1] @ now.shear[sides]
-        incoming = np.zeros(len(matrix))
+        incoming = matrix @ of_slices
         for hole, coefficients in enumerate(on_holes):
             incoming += plate.block(section.hole, hole) @ coefficients
         for of, name, load in system.given.columns:

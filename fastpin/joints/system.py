@@ -7,7 +7,7 @@ the pin over the plate, and the motions of each plate that is not held. The cond
 and plate, and the coherence of a pin in its plates:
 
     first plate of a pin    sum over its plates of t (F + e c) = force on the pin, for x and y
-    each further plate      D_before - D + flexibility times the force between both plates = 0, for x and y
+    each further section    what ties the sections of a pin, see :mod:`fastpin.joints.bending`, for x and y
     rotations               one moment for all plates of a pin; equal rotations
     plate that moves        the work of all t (F + e c), of moments, of friction of faying surfaces and of its loads on
                             each of its motions = 0
@@ -33,6 +33,7 @@ from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.interfaces import TURN, Nodes
 from fastpin.elasticity.operator import LARGEST_DENSE, DenseOperator
 from fastpin.elasticity.system import Interface, System
+from fastpin.joints.bending import Coherence
 from fastpin.joints.faying import SIDES, SPREAD, FayingSurface, rim_basis, rows_of
 from fastpin.joints.ports import PortColumns, Ports
 from fastpin.lugs.several_holes import HolesCompliance
@@ -63,9 +64,9 @@ class PinSection:
     problem : Problem
         The pin in an infinite plate of this material.
     thickness : float
-        Thickness of the plate, in units of the first one.
-    flexibility : float
-        Displacement of this section over the one before, per force between them, dimensionless; 0 for the first one.
+        Thickness of the plate, or of the slice, in units of the first plate.
+    slices : int
+        Number of slices of the plate.
     """
 
     pin: int
@@ -74,7 +75,17 @@ class PinSection:
     at: complex
     problem: Problem
     thickness: float
-    flexibility: float = 0.0
+    slices: int = 1
+
+    def felt(self, other: PinSection, holes: int) -> float:
+        """How much of the smooth compliance of the plate this section feels of another one, or of itself.
+
+        In a plate with several of its holes pinned all slices share their mean tractions. With one hole each slice is a
+        plate by itself.
+        """
+        if holes == 1 or self.plate != other.plate:
+            return float(self is other)
+        return 1.0 / self.slices
 
 
 class Motion(NamedTuple):
@@ -236,6 +247,7 @@ def build(
     given: JointLoads,
     grids: Sequence[Grid],
     force: float,
+    coherence: Sequence[Coherence],
     faying: Sequence[FayingSurface] = (),
 ) -> PinsSystem:
     """Fill the matrices of a joint with reference force `force`, N/m.
@@ -249,6 +261,8 @@ def build(
     grids : sequence of Grid
         The nodes of each section, all round.
     force : float
+    coherence : sequence of Coherence
+        What ties the sections of each pin.
     faying : sequence of FayingSurface
     """
     nodes = Nodes(tuple(grids), SIDES * len(faying))
@@ -268,20 +282,19 @@ def build(
     bases = [basis(plates[each.plate].block(0, 0), grid) for each, grid in zip(sections, grids, strict=True)]
     rims = [(each, nodes.rows(a), *bases[a]) for a, each in enumerate(sections)]
     beta = scales.displacement / force
-    equilibrium, rows, springs, forces = _conditions(sections, alone, nodes, given, beta)
+    equilibrium, rows, springs, forces = _conditions(sections, alone, nodes, given, coherence, beta)
     rims += _faying_rims(faying, sections, plates, given, nodes, matrix, motion, loads)
-    is_stored = bool(faying) or size <= LARGEST_DENSE
-    rubbing = slice(size + nodes.parts[-1].stop, 2 * size)
-    equilibrium[:, rubbing] = motion[rubbing].T  # friction does work on the motions of plates
+    has_ports = not faying and all(each.slices == 1 for each in sections)
+    is_stored = not has_ports or size <= LARGEST_DENSE
+    equilibrium[:, size + nodes.parts[-1].stop :] = motion[size + nodes.parts[-1].stop :].T  # work on moving plates
     for one, own, out, _ in rims:
         plate, unit = plates[one.plate], force / (one.problem.pair.plate.shear_modulus * scales.displacement)
         for other, columns, _, into in rims:
-            if other is one or (is_stored and other.plate == one.plate):
-                matrix[np.ix_(own, columns)] += unit * (out @ (plate.block(one.hole, other.hole) @ into))
-        for of, name, place in given.columns:
-            if of == one.plate:
-                loads[own, len(LOADS) + place] += unit * (out @ plate.column(name, one.hole))
-    ports = None if faying else _ports(sections, plates, nodes, matrix, motion, equilibrium, bases, beta)
+            if (felt := one.felt(other, plate.holes)) and (is_stored or other is one):
+                matrix[np.ix_(own, columns)] += unit * (out @ (felt * plate.block(one.hole, other.hole) @ into))
+        for _, name, place in (column for column in given.columns if column[0] == one.plate):
+            loads[own, len(LOADS) + place] += unit * (out @ plate.column(name, one.hole))
+    ports = _ports(sections, plates, nodes, matrix, motion, equilibrium, bases, beta) if has_ports else None
     loose = [np.maximum(s * each.concentric_gap, 0.0) for s, each in zip(stretch, alone, strict=True)]
     return PinsSystem(
         problem=sections[0].problem, grid=nodes, scales=scales, rest_clearance=0.0,  # type: ignore[arg-type]
@@ -417,13 +430,18 @@ class _Conditions:
 
 
 def _conditions(
-    sections: Sequence[PinSection], alone: Sequence[System], nodes: Nodes, given: JointLoads, beta: float
+    sections: Sequence[PinSection],
+    alone: Sequence[System],
+    nodes: Nodes,
+    given: JointLoads,
+    coherence: Sequence[Coherence],
+    beta: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The conditions of equilibrium and coherence: of the tractions, the motion, the springs in it, and the loads."""
     found, count = _Conditions(sections, alone, nodes, given, beta), 3 * len(sections)
     user = slice(len(LOADS), len(LOADS) + given.pins.shape[2])
     forces = np.zeros((len(found.rows), user.stop + 2))
-    for members, on_pin in zip(_sections_of_pins(sections), given.pins, strict=True):
+    for members, on_pin, ties in zip(_sections_of_pins(sections), given.pins, coherence, strict=True):
         head = 3 * members[0]
         forces[head : head + 2, user] = on_pin
         for place in members:
@@ -434,15 +452,16 @@ def _conditions(
         else:
             for place in members:
                 found.add_moment(head + TURN, place, sections[place].thickness)
-        for step, (before, place) in enumerate(itertools.pairwise(members), start=1):
-            soft = sections[place].flexibility
-            for axis in (0, 1, TURN):
-                found.add_displacement(3 * place + axis, before, axis, 1.0)
-                found.add_displacement(3 * place + axis, place, axis, -1.0)
+        for before, place in itertools.pairwise(members):
+            found.add_displacement(3 * place + TURN, before, TURN, 1.0)
+            found.add_displacement(3 * place + TURN, place, TURN, -1.0)
+        for place, by_moved, by_forces, outside in zip(members[1:], *ties, strict=True):
             for axis in (0, 1):
-                for earlier in members[:step]:
-                    found.add_force(3 * place + axis, earlier, axis, soft * sections[earlier].thickness)
-                forces[3 * place + axis, user] += soft * on_pin[axis]  # it acts on the first section
+                row = 3 * place + axis
+                for other, moved, force in zip(members, by_moved, by_forces, strict=True):
+                    found.add_displacement(row, other, axis, moved)
+                    found.add_force(row, other, axis, force * sections[other].thickness)
+                forces[row, user] += outside * on_pin[axis]
     for row, motion in enumerate(given.moving, start=count):
         for place, each in enumerate(sections):
             if each.plate == motion.plate:

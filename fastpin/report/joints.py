@@ -143,8 +143,7 @@ def forces_table(result: JointResult) -> str:
                 continue
             columns.append(_column(f"u {plate.name}.{axis}", values, unit["displacement"]))
     for pin in joint.pins:
-        place = joint.place(pin.name, pin.plates[0])
-        values = [float(np.hypot(*state.forces[place])) for state in states]
+        values = [float(np.hypot(*state.force(pin.name, pin.plates[0]))) for state in states]
         columns.append(_column(f"{pin.name} on {pin.plates[0]}", values, unit["force"]))
         shares = [state.shares(pin.plates[0])[pin.name] for state in states]
         if not all(math.isnan(share) for share in shares):

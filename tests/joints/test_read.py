@@ -60,7 +60,7 @@ def test_values_for_each_plate_and_parts_of_an_outline_are_read() -> None:
         ('plates = ["sheet"]', 'plates = ["skin"]', 0, 'plates: must be "sheet", not "skin"'),
         ("friction = 0.2", "friction = { skin = 0.2 }", 19, 'friction: must be "sheet", not "skin"'),
         ('["A", "B"]', '["A"]', 13, "name: must name 2 pins, as many as at has points, not 1"),
-        ("friction = 0.2", 'flexibility = "soft"', 19, 'flexibility: must be "rigid" or "tate-rosenfeld", not "soft"'),
+        ("friction = 0.2", 'flexibility = "soft"', 19, 'must be "rigid", "tate-rosenfeld" or "beam", not "soft"'),
         ('material = "steel"', 'material = "stel"', 15, "material:"),
         ("[joint]", "[joints]", 4, "unknown section [joints]"),
         ("nodes = 24", "nodes = 2", 5, "nodes: must be a whole number from 16 to 720, not 2"),

@@ -1,0 +1,86 @@
+"""What ties the sections of a pin to one another along x or y: springs between its plates, or a beam."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from fastpin.model.materials import Material
+
+SHEAR = 0.9
+"""Coefficient of shear of a round section, from its strain energy."""
+
+
+class Coherence(NamedTuple):
+    """Conditions on the displacements D of the S sections of a pin, and on its forces F on the plates, along one axis.
+
+    They are displacements D + forces F = outside times the force that acts on the pin.
+
+    Attributes
+    ----------
+    displacements : ndarray, shape (S - 1, S)
+    forces : ndarray, shape (S - 1, S)
+        m/N.
+    outside : ndarray, shape (S - 1,)
+        m/N.
+    """
+
+    displacements: np.ndarray
+    forces: np.ndarray
+    outside: np.ndarray
+
+    def scaled(self, factor: float) -> Coherence:
+        """The same with other units of force and displacement."""
+        return Coherence(self.displacements, factor * self.forces, factor * self.outside)
+
+
+def springs(flexibilities: Sequence[float]) -> Coherence:
+    """A rigid pin with a spring before each further section, m/N. The force on the pin acts on the first section."""
+    soft = np.asarray(flexibilities, dtype=float)
+    further, count = soft.size, soft.size + 1
+    differences = np.eye(further, count) - np.eye(further, count, k=1)
+    return Coherence(differences, np.tril(np.ones((further, count))) * soft[:, None], soft)
+
+
+def beam(material: Material, radius: float, edges: Sequence[float], first: int, heads: float) -> Coherence:
+    """A round pin as a Timoshenko beam, by the equation of three moments with the deflection by shear.
+
+    Each section loads the pin in its middle. The ends of the pin turn freely, or against the stiffness of its heads.
+    Source: S. P. Timoshenko, Strength of Materials, part 1, as usually quoted.
+
+    Parameters
+    ----------
+    material : Material
+    radius : float
+        m.
+    edges : sequence of float
+        Ends of the S sections along the pin, from 0 to its length, m; three sections at least, two with heads.
+    first : int
+        Number of sections that take the force on the pin: those of its first plate, in equal parts.
+    heads : float
+        Moment per rotation of each end, N m/rad. 0: the pin tilts freely; infinite: its ends do not turn.
+    """
+    ends = np.asarray(edges, dtype=float)
+    places, length = 0.5 * (ends[1:] + ends[:-1]), float(ends[-1])
+    count, span = places.size, np.diff(places)[:, None]
+    inertia = material.E * 0.25 * math.pi * radius**4
+    shear = SHEAR * material.shear_modulus * math.pi * radius**2
+    moved, load = np.split(np.eye(2 * count), 2)  # displacements and loads on the pin, by both
+    slope = np.diff(moved, axis=0) / span + np.cumsum(load, axis=0)[:-1] / shear  # by bending alone
+    moment = np.tril(places[:, None] - places) @ load
+    ratio = heads * length / inertia
+    held = ratio / (1.0 + ratio) if math.isfinite(ratio) else 1.0
+    at_head = held * (slope[0] - span[0] * moment[1] / (6.0 * inertia))
+    moment += at_head * inertia / ((1.0 - held) * length + held * (places[0] + 0.5 * span[0]))
+    turned = np.vstack([
+        np.diff(slope, axis=0)
+        - (span[:-1] * moment[:-2] + 2.0 * (span[:-1] + span[1:]) * moment[1:-1] + span[1:] * moment[2:])
+        / (6.0 * inertia),
+        moment[-1] * ((1.0 - held) * length + held * (length - places[-1])) / inertia
+        + held * (slope[-1] + span[-1] * (2.0 * moment[-1] + moment[-2]) / (6.0 * inertia)),
+    ])  # fmt: skip
+    displacements, forces = np.split(turned * (length / count), 2, axis=1)
+    return Coherence(displacements, -forces, -forces[:, :first].mean(axis=1))
