@@ -17,6 +17,7 @@ import sys
 from collections.abc import Callable, Iterable
 from hashlib import blake2b
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 from fastpin.runtime.extensions import library, llvm, numba
@@ -126,11 +127,47 @@ class Code(NamedTuple):
 
 @functools.cache
 def dispatcher(source: KernelSource, alone: bool = True) -> Any:
-    """Numba's function for a kernel: `alone` for calls from Python, else without a wrapper for these.
+    """Numba's function for a kernel: `alone` for calls from Python, else for other kernels, without a wrapper.
 
     Numba stores neither.
     """
-    return numba.njit(**SETTINGS, no_cpython_wrapper=not alone)(source.py_func)
+    inner = {} if alone else {"no_cpython_wrapper": True, "pipeline_class": _inner_compiler()}
+    return numba.njit(**SETTINGS, **inner)(source.py_func)
+
+
+@functools.cache
+def _inner_compiler() -> Any:
+    """Numba's compiler for functions that only kernels call. Their code is optimised in the outermost kernel, once.
+
+    Numba itself optimises a function and makes its machine code, and does it again in its caller and in the caller of
+    this one. That would take a third more time.
+    """
+    compiler: Any = numba.core.compiler.Compiler
+    whole: Any = getattr(numba.core.codegen, "JITCodeLibrary", None)
+    if whole is None:  # another version of Numba
+        return compiler
+
+    class Linked(whole):  # type: ignore[misc]
+        """Code to be linked into others, which has no address."""
+
+        codegen = SimpleNamespace(set_env=lambda name, environment: None)
+
+        def _optimize_final_module(self) -> None:
+            pass
+
+        def _finalize_final_module(self) -> None:
+            self._finalize_dynamic_globals()
+            self._finalized = True
+
+        def get_pointer_to_function(self, name: str) -> int:
+            return 0
+
+    class InnerCompiler(compiler):  # type: ignore[misc]
+        def define_pipelines(self) -> Any:
+            self.state.library = Linked(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+            return super().define_pipelines()
+
+    return InnerCompiler
 
 
 def compile_kernel(source: KernelSource, arguments: tuple[Any, ...]) -> tuple[Callable[..., Any], Code | bytes | None]:

@@ -62,6 +62,25 @@ def compiles(installed: Path, **more: str) -> bool:
     return done.stdout.split() == ["True"]
 
 
+OPTIMISED = """
+from numba.core.codegen import JITCodeLibrary
+names, whole = [], JITCodeLibrary._optimize_final_module
+def seen(library):
+    names.append(library.name)
+    whole(library)
+JITCodeLibrary._optimize_final_module = seen
+import small
+print(small.doubled(0.5), *(name for name in names if name in vars(small)))
+"""
+
+
+@pytest.mark.gate
+def test_functions_that_a_kernel_calls_are_optimised_with_it_only(tmp_path: Path) -> None:
+    """Numba would optimise each of them alone first, and in each caller, for a third more time."""
+    process = small_kernels.start(small_kernels.site(tmp_path), code=OPTIMISED)
+    assert small_kernels.read(process) == [repr(small_kernels.VALUES[0]), "doubled"]
+
+
 @pytest.mark.gate
 @keeps
 def test_kept_beside_the_package_until_it_does_not_fit_any_more(installed: Path, tmp_path: Path) -> None:

@@ -113,7 +113,7 @@ def test_an_interrupt_at_any_callback_of_llvm_leaves_whole_code(how: str, system
     """A signal, an exception of another thread, or one inside the callback, which Python ignores there."""
     words = read(start(site, how, system, code=INTERRUPTED), quiet=how != "raised")
     callbacks, stopped = map(int, words)
-    assert callbacks >= 8
+    assert callbacks >= 4  # LLVM asks for the code of each of the two kernels, and hands it over
     assert stopped == (0 if how == "raised" else callbacks)
     (imported,) = read(start(site, system, str(callbacks), code=LATER))
     assert imported == str(system == "elsewhere")

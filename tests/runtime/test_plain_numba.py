@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from numba.core import intrinsics
+from numba.core import codegen, compiler, intrinsics
 
 from fastpin.kernels import influence
 from fastpin.runtime import extensions, jit, machine, stored
@@ -87,6 +87,11 @@ def test_a_result_of_numba_is_stored_when_a_part_changes(
     assert file.with_suffix(stored.NUMBA).is_file()
     monkeypatch.setattr(machine, "compile_kernel", refuse)
     assert value() == before
+
+
+def test_numba_compiles_inner_functions_as_others_when_its_libraries_change(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(codegen, "JITCodeLibrary")
+    assert machine._inner_compiler.__wrapped__() is compiler.Compiler
 
 
 @pytest.mark.gate
