@@ -28,7 +28,10 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDER = "FASTPIN_MACHINE_CODE"
 """The variable that names the folder of machine code to the hook."""
 
-TAG = "py3-none-manylinux_2_17_x86_64"
+TAG = "FASTPIN_WHEEL_TAG"
+"""The variable that tells the hook the tag. Without it the wheel is for this system and this Python."""
+
+ANY_LINUX = "py3-none-manylinux_2_17_x86_64"
 """Any Python, since each file names its own. No file is linked to the system, so an old tag will do."""
 
 AS_SHIPPED = """
@@ -52,15 +55,25 @@ COMMANDS = ("run --error-bars --plot figure.png -o case.h5", "report case.h5 -o 
 
 
 def compile_kernels(
-    folder: Path, level: str, python: str = sys.executable, root: Path = ROOT, calls: str = RUN_COMMANDS
+    folder: Path,
+    level: str,
+    python: str = sys.executable,
+    root: Path = ROOT,
+    calls: str = RUN_COMMANDS,
+    commands: tuple[str, ...] = COMMANDS,
+    longest: float | None = None,
 ) -> None:
-    """Compile the kernels that a process calls, for a level of processors, and put their machine code into a folder."""
+    """Compile the kernels that a process calls, for a level of processors, and put their machine code into a folder.
+
+    :class:`subprocess.SubprocessError` if the process fails, or takes longer than `longest` seconds.
+    """
     with tempfile.TemporaryDirectory() as work:
         kept = {name: value for name, value in os.environ.items() if not name.startswith(("NUMBA_", "FASTPIN_"))}
         chosen = {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(Path(work, "cache"))}
-        words = [python, "-P", "-c", AS_SHIPPED + calls, level, *COMMANDS]
-        environment = kept | chosen | {"PYTHONPATH": str(root)}
-        subprocess.run(words, cwd=work, env=environment, stdout=subprocess.DEVNULL, check=True)
+        words = [python, "-P", "-c", AS_SHIPPED + calls, level, *commands]
+        paths = [str(root), *filter(None, [os.environ.get("PYTHONPATH")])]  # pip has its dependencies there
+        environment = kept | chosen | {"PYTHONPATH": os.pathsep.join(paths)}
+        subprocess.run(words, cwd=work, env=environment, stdout=subprocess.DEVNULL, check=True, timeout=longest)
         folder.mkdir(parents=True, exist_ok=True)
         for file in Path(work, "cache").glob("*.machine"):
             shutil.copy(file, folder)
@@ -71,8 +84,9 @@ class PlatformWheel(BuildHookInterface):
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         build_data["force_include"][os.environ[FOLDER]] = "fastpin/runtime/shipped"
-        build_data["pure_python"] = False
-        build_data["tag"] = TAG
+        build_data["pure_python"], build_data["infer_tag"] = False, True
+        if TAG in os.environ:
+            build_data["tag"] = os.environ[TAG]
 
 
 def main() -> None:
@@ -86,7 +100,7 @@ def main() -> None:
             for level in LEVELS:
                 compile_kernels(Path(folder), level, python)
         words = ["-m", "build", "--wheel", "--no-isolation", "--outdir", options.outdir, str(ROOT)]
-        variables = os.environ | {FOLDER: folder, "HATCH_BUILD_HOOK_ENABLE_CUSTOM": "true"}
+        variables = os.environ | {FOLDER: folder, TAG: ANY_LINUX, "HATCH_BUILD_HOOK_ENABLE_CUSTOM": "true"}
         subprocess.run([sys.executable, *words], env=variables, check=True)
 
 

@@ -118,7 +118,7 @@ def place_of(kernel: KernelSource, signature: str) -> StoredCode | None:
 
 def load_shipped(kernel: KernelSource, signature: str) -> Callable[..., Any] | None:
     """The function from the machine code of a platform wheel; None if none agrees."""
-    for level in _levels():
+    for level in _shipped_levels():
         with contextlib.suppress(OSError):  # the text of the kernel was replaced after its import
             entry = StoredCode(kernel, signature, environment_of(level)).load(SHIPPED)
             if entry is not None:
@@ -137,13 +137,16 @@ def own_environment() -> tuple[str, ...]:
     return (sys.version, np.__version__, _version("numba"), _version("llvmlite"), *machine.target(), *_settings())
 
 
-@functools.cache
-def _levels() -> list[str]:
-    """Levels of shipped code that this processor runs. None if Numba is to compile with settings of its own."""
-    if _settings() or not SHIPPED.is_dir():
-        return []
+def levels() -> list[str]:
+    """Levels of which this processor is, the best first."""
     features = {name.removeprefix("+") for name in machine.target()[-1].split(",")}
     return [level for level, needed in LEVELS.items() if needed <= features]
+
+
+@functools.cache
+def _shipped_levels() -> list[str]:
+    """Levels of shipped code that this processor runs. None if Numba is to compile with settings of its own."""
+    return [] if _settings() or not SHIPPED.is_dir() else levels()
 
 
 def _settings() -> list[str]:

@@ -75,7 +75,7 @@ def test_shipped_code_needs_no_compiler_and_gives_the_same_bits(site: Path, tmp_
 def test_code_for_other_processors_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stored, "SHIPPED", tmp_path)
     monkeypatch.setattr(stored, "_settings", list)
-    levels = stored._levels.__wrapped__
+    levels = stored._shipped_levels.__wrapped__
     for features, known in {"+sse4.2": [], ",".join(f"+{name}" for name in stored.LEVELS["x86-64-v2"]): 1}.items():
         monkeypatch.setattr(machine, "target", lambda features=features: ("x86_64", "some", features))
         assert levels() == (["x86-64-v2"] if known else [])
@@ -88,10 +88,13 @@ def test_code_that_needs_an_unknown_symbol_is_not_loaded() -> None:
         machine.load(code, "name", __name__)
 
 
-def test_the_hook_adds_the_folder_and_the_tag(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("tag", [None, "py3-none-manylinux_2_17_x86_64"])
+def test_the_hook_adds_the_folder_and_the_tag(tag: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(platform_wheel.FOLDER, "/code")
+    if tag is not None:
+        monkeypatch.setenv(platform_wheel.TAG, tag)
     data: dict[str, Any] = {"force_include": {}}
     hook = object.__new__(platform_wheel.PlatformWheel)
     hook.initialize("standard", data)
     assert data["force_include"] == {"/code": "fastpin/runtime/shipped"}
-    assert (data["pure_python"], data["tag"]) == (False, "py3-none-manylinux_2_17_x86_64")
+    assert (data["pure_python"], data["infer_tag"], data.get("tag")) == (False, True, tag)
