@@ -309,7 +309,7 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
         len(rows) - len(found),
         plan.case(plan.points[0]).problem,
         tuple(name for name in plan.fields if len(_different([point.values.get(name) for point in plan.points])) > 1),
-        plan.outcomes[value].classes if value in plan.outcomes else {},
+        {} if value == "seconds" else plan.numbers[value].classes,
         [bars for *_, bars, _ in parts.values()] if any(bar_column(value) in row for row in rows) else [],
         [endless for *_, endless in parts.values()] if value in plan.outcomes and plan.outcomes[value].is_life else [],
     )
@@ -326,7 +326,7 @@ def _axis(plan: Plan, rows: Sequence[TableRow], name: str, unit: Mapping[str, Un
 
 def _in_words(plan: Plan, name: str, value: Any) -> Any:
     """Return the word for the number of a class; another value as it is."""
-    classes = plan.outcomes[name].classes if name in plan.outcomes and value is not None else {}
+    classes = plan.numbers[name].classes if name in plan.numbers and value is not None else {}
     return next((word for number, word in classes.items() if number == value), value)
 
 
@@ -350,10 +350,15 @@ def _rounding(plan: Plan, rows: Sequence[TableRow], value: str, unit: Mapping[st
     is compared with the other motions.
     """
     alike = [value]
-    if value in KEY_FIGURES and value not in plan.outcomes and KEY_FIGURES[value]:
-        alike = [name for name, kind in KEY_FIGURES.items() if kind == KEY_FIGURES[value]]
+    if value in KEY_FIGURES and _kind(value):
+        alike = [name for name in KEY_FIGURES if _kind(name) == _kind(value)]
     numbers = [abs(row[name]) for row in rows if row["status"] == DONE for name in alike if _is_number(row.get(name))]
     return max(_ROUNDING.get(printed_unit(plan, value, unit).name, 0.0), ROUNDING * max(numbers, default=0.0))
+
+
+def _kind(figure: str) -> str:
+    """Return the kind of a key figure. All angles and widths are of one kind."""
+    return "angle" if KEY_FIGURES[figure].is_angle else KEY_FIGURES[figure].kind
 
 
 def _column(name: str, values: Sequence[Any], unit: Unit, bars: Sequence[float | None] = ()) -> Column:
@@ -390,8 +395,7 @@ def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRo
     found = []
     for row, thickness in zip(rows, thicknesses, strict=True):
         unit = of_thickness[thickness]
-        factors = {name: unit[kind].factor for name, kind in KEY_FIGURES.items() if kind in unit}
-        factors |= {name: outcome.unit_in(unit).factor for name, outcome in plan.outcomes.items()}
+        factors = {name: each.unit_in(unit).factor for name, each in plan.numbers.items() if each.kind in unit}
         factors |= {bar_column(name): factor for name, factor in factors.items()}
         known = {name: factor * row[name] for name, factor in factors.items() if row.get(name) is not None}
         found.append({**row, **known})
@@ -400,9 +404,7 @@ def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRo
 
 def printed_unit(plan: Plan, value: str, unit: Mapping[str, Unit]) -> Unit:
     """Return the unit of an outcome, a key figure or "seconds" among the printed units by kind."""
-    if value in plan.outcomes:
-        return plan.outcomes[value].unit_in(unit)
-    return Unit(1.0, "s") if value == "seconds" else unit.get(KEY_FIGURES[value], PLAIN)
+    return Unit(1.0, "s") if value == "seconds" else plan.numbers[value].unit_in(unit)
 
 
 def definition_words(outcome: StudyOutcome) -> str:

@@ -39,10 +39,9 @@ from fastpin.studies.outcomes import (
     TAKES,
     FunctionOfFile,
     StudyOutcome,
-    bar_of_taken,
     digest,
     of_last_cycle,
-    taken,
+    of_quantity,
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
 
@@ -240,13 +239,7 @@ def _of_quantity(section: Section) -> StudyOutcome | None:
     if take == "last" and span == "cycle":
         section.report('over: the last state is that of the history, too; take "largest" or another', "over")
         return None
-    kind = "width" if (kind, take) == ("angle", "range") else kind
-    definition = {"quantity": quantity, "take": take, "over": span}
-    if interface != INTERFACES[0]:  # a definition without it is as it was before there was a choice
-        definition["interface"] = interface
-    read = partial(taken, quantity, take, span, interface)
-    bar = None if kind == "class" else partial(bar_of_taken, quantity, take, span, interface)
-    return StudyOutcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes), bar)
+    return of_quantity(quantity, take, span, interface)
 
 
 def _of_cycle(section: Section) -> StudyOutcome | None:

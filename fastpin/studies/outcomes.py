@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import json
 import math
 import pickle
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -87,7 +89,8 @@ class StudyOutcome:
     Attributes
     ----------
     kind : str
-        See :class:`fastpin.assess.outputs.Output`; "" for a function of the user.
+        See :class:`fastpin.assess.outputs.Output`; "" for a function of the user, "degrees" for a place on the hole
+        that is in degrees already.
     unit : str
         Unit of a function of the user, as it is to be shown; empty for a plain number.
     definition : str
@@ -129,9 +132,14 @@ class StudyOutcome:
         """A difference of values in the units of reports: of angles and widths in degrees."""
         return math.degrees(bar) if self.kind in ("angle", "width") else bar
 
+    @property
+    def is_angle(self) -> bool:
+        """Whether it is in degrees in reports."""
+        return self.kind in ("angle", "width", "degrees")
+
     def unit_in(self, units: Mapping[str, Unit]) -> Unit:
         """The unit of :meth:`reported` values. `units` is that of every kind, see :func:`fastpin.model.units.units`."""
-        return DEGREE if self.kind in ("angle", "width") else units.get(self.kind, Unit(1.0, self.unit))
+        return DEGREE if self.is_angle else units.get(self.kind, Unit(1.0, self.unit))
 
 
 class OutcomeValue(NamedTuple):
@@ -277,6 +285,19 @@ def taken(quantity: str, take: str, span: str, interface: str, result: Result) -
     if take == "largest magnitude":
         values = np.abs(values)
     return float(values.min() if take == "smallest" else values.max())
+
+
+def of_quantity(
+    quantity: str, take: str = "last", span: str = "history", interface: str = INTERFACES[0]
+) -> StudyOutcome:
+    """The outcome of :func:`taken`."""
+    each, how = QUANTITIES[quantity], (quantity, take, span, interface)
+    definition = {"quantity": quantity, "take": take, "over": span}
+    if interface != INTERFACES[0]:  # a definition without it is as it was before there was a choice
+        definition["interface"] = interface
+    kind = "width" if (each.kind, take) == ("angle", "range") else each.kind
+    bar = None if each.classes else partial(bar_of_taken, *how)
+    return StudyOutcome(kind, "", json.dumps(definition), partial(taken, *how), dict(each.classes), bar)
 
 
 def of_interface(quantity: str, interface: str) -> Callable[[State], float]:

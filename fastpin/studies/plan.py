@@ -136,6 +136,11 @@ class Plan:
     def __repr__(self) -> str:
         return f"<Plan: {len(self.points):,} points of {', '.join(self.fields)}>"
 
+    @property
+    def numbers(self) -> Outcomes:
+        """The key figures and the outcomes, by name."""
+        return KEY_FIGURES | self.outcomes
+
     @cached_property
     def runs(self) -> dict[str, Point]:
         """The runs by id: the first point of each input."""

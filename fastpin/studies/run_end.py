@@ -7,41 +7,55 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fastpin.model import angles, ties
 from fastpin.reading.zones import Interval
-from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees
-from fastpin.studies.outcomes import OutcomeValue, bar_of_taken, taken
+from fastpin.studies.outcomes import OutcomeValue, StudyOutcome, of_quantity
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.solver.result import Result
 
 
-KEY_FIGURES: dict[str, str] = {
-    "states": "",
-    "peak_pressure": "traction",
-    "peak_pressure_angle": "angle",
-    "peak_shear": "traction",
-    "peak_shear_angle": "angle",
-    "contact_start": "angle",
-    "contact_stop": "angle",
-    "contact_width": "angle",
-    "stick_width": "angle",
-    "rotation": "rotation",
-    "dx": "displacement",
-    "dy": "displacement",
-    "dissipation": "energy",
-    "max_pressure": "traction",
-    "max_shear": "traction",
-    "residual": "",
-    "nodes": "",
-}
-"""Names and kinds of the key figures.
+def _widest(intervals: list[Interval]) -> int:
+    """The place of the widest interval; of equal ones the one farthest to the right."""
+    ends = np.array(intervals)
+    return ties.top_angle(ends[:, 1] - ends[:, 0], ends.mean(axis=1))
 
-A kind is a key of :func:`fastpin.model.units.units`, "angle" (deg) or "" for a plain number.
+
+def _end(side: int, result: Result) -> float | None:
+    """An end of the widest contact interval in degrees from the bottom of the hole; it may lie beyond the top."""
+    ends = result[-1].contact
+    return angles.interval_from_bottom(*ends[_widest(ends)])[side] if ends else None
+
+
+def _bar_of_end(side: str, result: Result) -> float:
+    """The error bar of :func:`_end`, degrees. A contact all round has no ends, and no bar."""
+    bars, ends = result[-1].error_bars, result[-1].contact
+    if bars is None or not ends:
+        return math.nan
+    return math.degrees(bars.get(f"contact_{_widest(ends) + 1}_{side}", math.nan))
+
+
+KEY_FIGURES: dict[str, StudyOutcome] = {
+    "states": StudyOutcome("", "", "", len),
+    **{name: of_quantity(name) for name in ("peak_pressure", "peak_pressure_angle", "peak_shear", "peak_shear_angle")},
+    **{
+        f"contact_{side}": StudyOutcome("degrees", "", "", partial(_end, k), bar=partial(_bar_of_end, side))
+        for k, side in enumerate(("start", "stop"))
+    },
+    **{name: of_quantity(name) for name in ("contact_width", "stick_width", "rotation", "dx", "dy", "dissipation")},
+    "max_pressure": of_quantity("peak_pressure", "largest"),
+    "max_shear": of_quantity("peak_shear", "largest magnitude"),
+    "residual": StudyOutcome(
+        "", "", "", lambda result: max(max(state.residuals.values(), default=0.0) for state in result)
+    ),
+    "nodes": StudyOutcome("", "", "", lambda result: result.grid.size),
+}
+"""The key figures: outcomes that every run of a sweep has.
 
 * ``states``, ``nodes``: numbers of states and of nodes.
 * ``peak_pressure`` to ``dissipation``: quantities of the last state, see :data:`fastpin.states.QUANTITIES`.
@@ -51,12 +65,6 @@ A kind is a key of :func:`fastpin.model.units.units`, "angle" (deg) or "" for a 
 * ``max_pressure``, ``max_shear``: largest peak pressure, and largest magnitude of the peak shear, of all states.
 * ``residual``: the largest residual of all states.
 """
-
-TAKEN = {name: (name, "last") for name in KEY_FIGURES if name in QUANTITIES} | {
-    "max_pressure": ("peak_pressure", "largest"),
-    "max_shear": ("peak_shear", "largest magnitude"),
-}
-"""The key figures that are read as outcomes are: the quantity of each, and how its number is taken from all states."""
 
 RUN_COLUMNS: dict[str, str] = {
     "id": "TEXT PRIMARY KEY",
@@ -79,16 +87,16 @@ def key_figures(result: Result) -> dict[str, Any]:
     Angles and widths are in degrees. None stands for a figure that an open contact does not have. A result whose
     history was not followed to the end has only the numbers of states and nodes.
     """
-    figures: dict[str, Any] = dict.fromkeys(KEY_FIGURES)
-    figures |= {"states": len(result), "nodes": result.grid.size}
-    if not result.complete:
-        return figures
-    if ends := result[-1].contact:
-        start, stop = angles.interval_from_bottom(*ends[_widest(ends)])
-        figures |= {"contact_start": start, "contact_stop": stop}
-    figures |= {name: in_degrees(of, taken(of, take, "history", "pin", result)) for name, (of, take) in TAKEN.items()}
-    figures["residual"] = max(max(state.residuals.values(), default=0.0) for state in result)
-    return {name: _number(value) for name, value in figures.items()}
+    known = KEY_FIGURES if result.complete else ("states", "nodes")
+    return {name: _number(each, result) if name in known else None for name, each in KEY_FIGURES.items()}
+
+
+def _number(figure: StudyOutcome, result: Result) -> int | float | None:
+    """Return a key figure for SQLite. NaN becomes None: there is no such peak, and it has no angle."""
+    value = figure.read(result)
+    if value is None or isinstance(value, int):
+        return value
+    return figure.reported(float(value)) if math.isfinite(value) else None
 
 
 def bar_column(name: str) -> str:
@@ -104,28 +112,8 @@ def key_bars(result: Result) -> dict[str, float]:
     """
     if not result.complete or result.coarse is None:
         return {}
-    bars = result[-1].error_bars
-    assert bars is not None
-    widest = _widest(ends) if (ends := result[-1].contact) else 0
-    found = {
-        name: bar_in_degrees(of, bar_of_taken(of, take, "history", "pin", result)) for name, (of, take) in TAKEN.items()
-    }
-    for end in ("start", "stop"):  # A contact all round has no ends.
-        found[f"contact_{end}"] = math.degrees(bars.get(f"contact_{widest + 1}_{end}", math.nan))
-    return {name: bar for name, bar in found.items() if not math.isnan(bar)}
-
-
-def _widest(intervals: list[Interval]) -> int:
-    """The place of the widest interval; of equal ones the one farthest to the right."""
-    ends = np.array(intervals)
-    return ties.top_angle(ends[:, 1] - ends[:, 0], ends.mean(axis=1))
-
-
-def _number(value: Any) -> int | float | None:
-    """Return a number for SQLite. NaN becomes None: there is no such peak, and it has no angle."""
-    if value is None or isinstance(value, int):
-        return value
-    return float(value) if math.isfinite(value) else None
+    bars = {name: each.reported_bar(each.bar(result)) for name, each in KEY_FIGURES.items() if each.bar is not None}
+    return {name: bar for name, bar in bars.items() if not math.isnan(bar)}
 
 
 @dataclass(frozen=True)

@@ -543,14 +543,12 @@ def _field_attributes(plan: Plan, name: str) -> NamedAttributes:
 
 def _attributes(plan: Plan, rows: Sequence[Mapping[str, Any]], name: str) -> NamedAttributes:
     """Unit and words of an outcome or a key figure, per metre of thickness as in :func:`fastpin.studies.sweep.load`."""
-    names = units_per_thickness(plan.case(plan.points[0]).problem) | {"angle": "deg"}
+    names = units_per_thickness(plan.case(plan.points[0]).problem)
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
         names = {}
-    found: NamedAttributes = {"units": names.get(KEY_FIGURES.get(name, ""), "")}
-    if name in plan.outcomes:
-        outcome = plan.outcomes[name]
-        found["units"] = outcome.unit_in({kind: Unit(1.0, unit) for kind, unit in names.items()}).name
-        if outcome.classes:
-            found["flag_values"] = [float(number) for number in outcome.classes]
-            found["flag_meanings"] = " ".join(word.replace(" ", "_") for word in outcome.classes.values())
+    number = plan.numbers[name]
+    found: NamedAttributes = {"units": number.unit_in({kind: Unit(1.0, unit) for kind, unit in names.items()}).name}
+    if number.classes:
+        found["flag_values"] = [float(value) for value in number.classes]
+        found["flag_meanings"] = " ".join(word.replace(" ", "_") for word in number.classes.values())
     return found | {"long_name": plan.labels.get(name, name.replace("_", " "))}

@@ -146,9 +146,10 @@ def test_fields_have_words(field: str, words: str) -> None:
     assert field_words(field) == words
 
 
-def test_runs_with_different_units_have_none(plan: Plan, rows: list[dict[str, Any]]) -> None:
+def test_runs_with_different_units_have_none_but_degrees(plan: Plan, rows: list[dict[str, Any]]) -> None:
     rows[0]["dimensionless"] = 1
     assert chart(plan, rows, "peak_pressure").label == "peak pressure"
+    assert chart(plan, rows, "contact_start").label == "contact start (deg)"
 
 
 def test_long_tables_are_cut_in_the_middle() -> None:
