@@ -130,35 +130,6 @@ def single(waiting: int) -> int:
     return 1
 
 
-def run_tasks(
-    executor: Executor | None, workers: int, tasks: Collection[K], submit: Submit[K, T], size: Size
-) -> Ended[K, T]:
-    """Run tasks in batches. Yield each batch with its return values or exception, in the order in which they end.
-
-    Parameters
-    ----------
-    executor : Executor or None
-        Runs the tasks, one at a time: its workers may be far apart. None starts worker processes.
-    workers : int
-        Number of worker processes; without effect if there is an executor.
-    tasks : collection
-    submit : callable
-        Submits a batch to an executor.
-    size : callable
-        Gives the number of tasks of the next batch for worker processes.
-
-    Raises
-    ------
-    BrokenError
-        If `executor` breaks.
-    FastpinError
-        If worker processes don't start.
-    """
-    if executor is not None:
-        return through(executor, deque(tasks), submit)
-    return through_processes(workers, tasks, submit, size)
-
-
 def through(
     executor: Executor, waiting: deque[K], submit: Submit[K, T], size: Size = single, ahead: int = MOST_SUBMITTED
 ) -> Ended[K, T]:
@@ -374,6 +345,10 @@ def pickled_outcomes(plan: Plan) -> PickledOutcomes:
     return content
 
 
+Endings = Generator[list[RunEnd], None, None]
+"""Yields the ends of the runs of a batch when it ends."""
+
+
 @dataclass(eq=False)
 class Work:
     """The tasks of one call: runs that are solved, and finished runs whose outcomes are read."""
@@ -388,68 +363,72 @@ class Work:
 
     def __post_init__(self) -> None:
         self._setting = Setting(os.getpid(), __version__, 0 if self.files else MOST_PACKED)
-        self._submitted: set[str] = set()
 
-    def solve(self, todo: Collection[str]) -> Generator[list[RunEnd], None, None]:
-        """Yield the ends of the runs of each batch when it ends."""
-        pace, todo = Pace(self.workers), neighbours(self.plan, todo)
+    def solve(self, todo: Collection[str]) -> Endings:
+        """Yield the ends of the runs of each batch when it ends.
+
+        If the worker of a run died, perhaps in a function of the user, the outcomes of the run are left for later.
+        """
+        submitted: set[str] = set()
+
+        def task(run: str) -> tuple[Any, ...]:
+            outcomes = {} if run in submitted else self.outcomes
+            submitted.add(run)
+            return run, self.plan.case(self.plan.runs[run]), str(self._path(run)), outcomes, self._setting
+
         for run in todo:
             self._path(run).unlink(missing_ok=True)  # A damaged file, or the states of a failed run.
-        with closing(self._run(todo, self._submit_solve, pace.size)) as ended:
-            for ends in ended:
-                pace.learn(ends)
-                yield [_arrived(end, self._path(end.id)) for end in ends]
+        return self._run(neighbours(self.plan, todo), solve_run, task, lambda end: _arrived(end, self._path(end.id)))
 
-    def read(self, missing: dict[str, list[str]]) -> Generator[list[RunEnd], None, None]:
+    def read(self, missing: dict[str, list[str]]) -> Endings:
         """Yield the outcomes of finished runs, when they are read. `missing` has their names by run."""
 
-        def submit(executor: Executor, batch: Batch[str]) -> Future[list[RunEnd]]:
-            tasks = []
-            for run in batch:
-                path = self._path(run)
-                packed = None if path.exists() else self.index.content(run)
-                wanted = {name: self.outcomes[name] for name in missing[run]}
-                tasks.append((run, str(path), packed, wanted, self._setting))
-            return executor.submit(in_turn, read_run, tasks)
+        def task(run: str) -> tuple[Any, ...]:
+            path = self._path(run)
+            packed = None if path.exists() else self.index.content(run)
+            return run, str(path), packed, {name: self.outcomes[name] for name in missing[run]}, self._setting
 
-        pace = Pace(self.workers)
-        with closing(self._run(missing, submit, pace.size)) as ended:
-            for ends in ended:
-                pace.learn(ends)
-                yield [end if end.reason is None else self._lost(end, missing[end.id]) for end in ends]
+        def known(end: RunEnd) -> RunEnd:
+            if end.reason is None:
+                return end
+            lost = {name: OutcomeValue(self.outcomes[name][0], None, end.reason) for name in missing[end.id]}
+            return RunEnd(end.id, None, outcomes=lost)
 
-    def _lost(self, end: RunEnd, names: list[str]) -> RunEnd:
-        """The end of a run whose outcomes could not be read."""
-        lost = {name: OutcomeValue(self.outcomes[name][0], None, end.reason) for name in names}
-        return RunEnd(end.id, None, outcomes=lost)
-
-    def _submit_solve(self, executor: Executor, batch: Batch[str]) -> Future[list[RunEnd]]:
-        """Submit runs. If its worker died, perhaps in a function of the user, a run's outcomes are left for later."""
-        tasks = []
-        for run in batch:
-            outcomes = {} if run in self._submitted else self.outcomes
-            self._submitted.add(run)
-            case = self.plan.case(self.plan.runs[run])
-            tasks.append((run, case, str(self._path(run)), outcomes, self._setting))
-        return executor.submit(in_turn, solve_run, tasks)
+        return self._run(missing, read_run, task, known)
 
     def _run(
-        self, tasks: Collection[str], submit: Submit[str, RunEnd], size: Size
-    ) -> Generator[list[RunEnd], None, None]:
-        """Run tasks. An exception of a worker is the end of each run of its batch, with the exception as its reason."""
-        if not tasks:
+        self,
+        runs: Collection[str],
+        function: Callable[..., RunEnd],
+        task: Callable[[str], tuple[Any, ...]],
+        seen: Callable[[RunEnd], RunEnd],
+    ) -> Endings:
+        """Call a function for each run, with the arguments of its `task`, and yield the ends as they are `seen`.
+
+        An exception of a worker is the end of each run of its batch, with the exception as its reason.
+        """
+        if not runs:
             return
+        pace = Pace(self.workers)
+
+        def submit(executor: Executor, batch: Batch[str]) -> Future[list[RunEnd]]:
+            return executor.submit(in_turn, function, [task(run) for run in batch])
+
         # An executor may run its tasks in this process. They have one thread for BLAS, as in every worker.
         with threadpool_limits(limits=1, user_api="blas"):
             try:
-                with closing(run_tasks(self.executor, self.workers, tasks, submit, size)) as ended:
-                    for batch, ends in ended:
+                if self.executor is not None:  # one run at a time: its workers may be far apart
+                    batches = through(self.executor, deque(runs), submit)
+                else:
+                    batches = through_processes(self.workers, runs, submit, pace.size)
+                with closing(batches):
+                    for batch, ends in batches:
                         if isinstance(ends, BaseException):
                             died = type(ends).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
                             reason = DIED if died else f"{type(ends).__name__}: {ends}"
-                            yield [RunEnd(run, reason) for run in batch]
-                        else:
-                            yield ends
+                            ends = [RunEnd(run, reason) for run in batch]
+                        pace.learn(ends)
+                        yield [seen(end) for end in ends]
             except BrokenError:
                 raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
 
