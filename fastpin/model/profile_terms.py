@@ -88,8 +88,8 @@ class Term(ABC):
         return replace(self, **{name: np.multiply(getattr(self, name), factor) for name in self.sizes})  # type: ignore[type-var]
 
     def entries(self) -> dict[str, Any]:
-        """The kind, and the fields by name, as ids and HDF5 files hold them."""
-        return {"kind": self.kind, **{each.name: getattr(self, each.name) for each in fields(self)}}  # type: ignore[arg-type]
+        """The kind, and the fields by name, as ids and HDF5 files hold them: numbers, texts and lists."""
+        return {"kind": self.kind, **{each.name: np.array(getattr(self, each.name)).tolist() for each in fields(self)}}  # type: ignore[arg-type]
 
     def toml(self) -> dict[str, Any]:
         """The keys and values of its table in a case file. Its kind is the key of its first field."""

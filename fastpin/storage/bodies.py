@@ -1,4 +1,4 @@
-"""The bodies of a problem in an HDF5 file: materials, pin and plate.
+"""The problem in an HDF5 file: its entries, and those of its materials, bodies and profiles.
 
 A solid pin and an infinite plate are left out, so a file without bodies is as it was before there were any. A
 compliance is stored whole.
@@ -6,7 +6,7 @@ compliance is stored whole.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import h5py
@@ -14,7 +14,7 @@ import numpy as np
 
 from fastpin.bodies.body import BodyBase
 from fastpin.bodies.kinds import KINDS
-from fastpin.model import FatigueConstants, Problem, checks
+from fastpin.model import FatigueConstants, checks
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries, law_from
 from fastpin.model.laminate import Laminate, laminate_from
@@ -28,32 +28,55 @@ LAMINATE = "laminate"
 """Group of a material that is a laminate: its axis, and its compliances or its plies."""
 
 
-def write_material(group: h5py.Group, name: str, material: Material) -> None:
-    """Write a material into a new group of this name."""
-    body = group.create_group(name)
-    body.attrs.update(E=material.E, nu=material.nu, name=material.name, **material.numbers)
-    if not material.is_isotropic:
-        _write(body, LAMINATE, material.entries())
-    if material.fatigue is not None:
-        body.create_group("fatigue").attrs.update(material.fatigue.given())
-    if material.growth is not None:
-        body.create_group("growth").attrs.update(law_entries(material.growth))
+def write_entries(group: h5py.Group, entries: Mapping[str, Any]) -> None:
+    """Write the entries of a problem, a body, a material or a profile into their group.
+
+    A table is a group, and a list of tables is a group of groups with their places for names. Other lists are arrays,
+    all else is an attribute. What is None is left out.
+    """
+    for key, value in entries.items():
+        if isinstance(value, Material):
+            value = _of_material(value)
+        elif isinstance(value, list) and all(isinstance(each, Mapping) for each in value):
+            value = {str(place): each for place, each in enumerate(value)}
+        if isinstance(value, Mapping):
+            write_entries(group.create_group(key), value)
+        elif isinstance(value, bytes):  # an attribute has too little room
+            group[key] = np.frombuffer(value, dtype=np.int8)
+        elif isinstance(value, list | np.ndarray):
+            group[key] = np.array(value)
+        elif value is not None:
+            group.attrs[key] = value
+
+
+def _of_material(material: Material) -> dict[str, Any]:
+    """Return the entries of a material. A laminate also has its plies or its compliances."""
+    return {
+        "E": material.E,
+        "nu": material.nu,
+        "name": material.name,
+        **material.numbers,
+        LAMINATE: None if material.is_isotropic else material.entries(),
+        "fatigue": None if material.fatigue is None else material.fatigue.given(),
+        "growth": None if material.growth is None else law_entries(material.growth),
+    }
 
 
 def read_material(group: h5py.Group) -> Material:
     """Read a material from its group."""
-    attributes, fatigue = group.attrs, None
     if LAMINATE in group:
         return _read_laminate(group[LAMINATE])
-    if "fatigue" in group:
-        stored = group["fatigue"].attrs.items()
-        fatigue = FatigueConstants(**{str(constant): as_python(value) for constant, value in stored})
-    growth = None
-    if "growth" in group:
-        growth = law_from({str(constant): as_python(value) for constant, value in group["growth"].attrs.items()})
-    strengths = {name: float(attributes[name]) for name in NUMBERS if name in attributes}
+    attributes = group.attrs
+    fatigue = FatigueConstants(**_attributes(group["fatigue"])) if "fatigue" in group else None
+    growth = law_from(_attributes(group["growth"])) if "growth" in group else None
+    numbers = {name: float(attributes[name]) for name in NUMBERS if name in attributes}
     elastic = float(attributes["E"]), float(attributes["nu"])
-    return Material(*elastic, text_of(attributes["name"]), fatigue, **strengths, growth=growth)
+    return Material(*elastic, text_of(attributes["name"]), fatigue, **numbers, growth=growth)
+
+
+def _attributes(group: h5py.Group) -> dict[str, Any]:
+    """Return the attributes of a group by name."""
+    return {str(name): as_python(value) for name, value in group.attrs.items()}
 
 
 def _read_laminate(group: h5py.Group) -> Laminate:
@@ -67,12 +90,6 @@ def _read_laminate(group: h5py.Group) -> Laminate:
     return laminate_from(**given, plies=plies, **arrays)
 
 
-def write_bodies(group: h5py.Group, problem: Problem) -> None:
-    """Write the bodies of a problem into its group."""
-    for name, body in problem.given_bodies.items():
-        _write(group, name, body.entries())
-
-
 def read_bodies(group: h5py.Group) -> dict[str, Any]:
     """Read the bodies of a problem: the arguments ``pin_body`` and ``plate_body`` that its group holds.
 
@@ -84,29 +101,6 @@ def read_bodies(group: h5py.Group) -> dict[str, Any]:
         If a number is out of range.
     """
     return {name: _read_body(group[name]) for name in ("pin_body", "plate_body") if name in group}
-
-
-def _write(parent: h5py.Group, name: str, entries: Mapping[str, Any]) -> None:
-    """Write the entries of a body or a laminate, or the columns of a compliance, into a new group.
-
-    A list of tables becomes groups with their places for names.
-    """
-    group = parent.create_group(name)
-    for key, value in entries.items():
-        if isinstance(value, Material):
-            write_material(group, key, value)
-        elif isinstance(value, Mapping):
-            _write(group, key, value)
-        elif isinstance(value, list) and isinstance(value[0], Mapping):
-            _write(group, key, {str(place): each for place, each in enumerate(value)})
-        elif isinstance(value, list):
-            group[key] = np.array(value)
-        elif isinstance(value, np.ndarray):
-            group[key] = value
-        elif isinstance(value, bytes):  # an attribute has too little room
-            group[key] = np.frombuffer(value, dtype=np.int8)
-        elif value is not None:
-            group.attrs[key] = value
 
 
 def _read_body(group: h5py.Group) -> BodyBase:
@@ -130,26 +124,6 @@ def _read_body(group: h5py.Group) -> BodyBase:
     if "inside" in group:
         given["inside"] = _read_body(group["inside"])
     return KINDS[kind].from_entries(given)
-
-
-Entries = Sequence[Mapping[str, Any]]
-"""The terms of a profile, see :meth:`Profile.entries`."""
-
-
-def write_profiles(parent: h5py.Group, name: str, entries: Entries | Mapping[str, Entries]) -> None:
-    """Write the entries of a profile, or of several profiles by name, into a new group."""
-    group = parent.create_group(name)
-    if isinstance(entries, Mapping):
-        for key, profile in entries.items():
-            write_profiles(group, key, profile)
-        return
-    for number, term in enumerate(entries):
-        inner = group.create_group(str(number))
-        for key, value in term.items():
-            if isinstance(value, tuple):
-                inner[key] = np.array(value)
-            else:
-                inner.attrs[key] = value
 
 
 def read_profiles(group: h5py.Group) -> dict[str, Any]:
@@ -178,7 +152,7 @@ def _read(group: h5py.Group) -> Profile:
 
 
 def _term(group: h5py.Group) -> Term:
-    term = {name: as_python(value) for name, value in group.attrs.items()}
+    term = _attributes(group)
     kind = term.pop("kind", None)
     if kind not in TERMS:
         raise ValueError(f"the kind {checks.as_toml(kind)} of a profile is unknown")

@@ -47,14 +47,7 @@ from fastpin.solver.result import Result
 from fastpin.states.cycles import CYCLE_KINDS, Cycle
 from fastpin.states.state import State
 from fastpin.storage import hdf5
-from fastpin.storage.bodies import (
-    read_bodies,
-    read_material,
-    read_profiles,
-    write_bodies,
-    write_material,
-    write_profiles,
-)
+from fastpin.storage.bodies import read_bodies, read_material, read_profiles, write_entries
 from fastpin.version import __version__
 
 FORMAT = "fastpin result"
@@ -211,15 +204,12 @@ def versions() -> dict[str, str]:
 
 
 def _write_problem(group: h5py.Group, problem: Problem) -> None:
-    for name, value in (problem.entries() | {"dimensionless": problem.dimensionless}).items():
-        if isinstance(value, (list, dict)):
-            write_profiles(group, name, value)
-        elif value is not None:
-            group.attrs[name] = value
-    group.attrs["plane"] = problem.pair.plane
-    for name, material in (("pin", problem.pair.pin), ("plate", problem.pair.plate)):
-        write_material(group, name, material)
-    write_bodies(group, problem)
+    bodies = {name: body.entries() for name, body in problem.given_bodies.items()}
+    own = {
+        "dimensionless": problem.dimensionless,
+        **{each.name: getattr(problem.pair, each.name) for each in fields(MaterialPair)},
+    }
+    write_entries(group, {**problem.entries(), **own, **bodies})
     group.attrs["units"] = [f"{kind}: {name}" for kind, name in units_per_thickness(problem).items()]
 
 
