@@ -1,4 +1,4 @@
-"""Text, table, JSON, CSV, page and outcomes of a case say the same, from memory and from its file."""
+"""Text, table, JSON, CSV, page, live page and outcomes of a case say the same, from memory and from its file."""
 
 import csv
 import json
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import pytest
 
 import fastpin
-from fastpin import MaterialPair, assess
+from fastpin import MaterialPair, assess, live
 from fastpin.assess.wear import cycle_columns, cycles_curve, scar_curves
 from fastpin.model import FatigueAssessment
 from fastpin.model.case import beside_of
@@ -18,6 +18,7 @@ from fastpin.model.units import units
 from fastpin.pages.sections import crack, fatigue, strength
 from fastpin.pages.source import margins
 from fastpin.pages.wear import damage, numbers, overview
+from fastpin.states.quantities import QUANTITIES
 from fastpin.studies import parse_plan
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import value_of
@@ -25,6 +26,7 @@ from tests.support.case_texts import STEEL_IN_LAMINATE
 from tests.support.commands import said
 from tests.support.fatigue import CONSTANTS
 from tests.support.html import words_of
+from tests.support.live_pages import recorded
 from tests.support.lives import HISTORY, JOINT, sample_life
 from tests.support.tiers import some_gate
 
@@ -175,6 +177,19 @@ def test_a_page_says_what_the_text_says(
             assert re.search(re.escape(row["subject"]) + rf".*?{re.escape(format(row['margin'], '+.2f'))}", page)
 
 
+def test_the_live_page_has_the_numbers_of_json(told: Told, document: dict[str, Any]) -> None:
+    unit, found = (
+        units(told.result.problem),
+        recorded(live.record_page(fastpin.read_case(told.path), told.result.states)),
+    )
+    for picture, state in zip(found["add"], document["states"], strict=True):
+        assert all(picture[name] == state[name] for name in ("contact", "stick", "slip"))
+        for name in ("peak_pressure", "peak_pressure_angle", "peak_shear", "dx", "dy", "rotation", "dissipation"):
+            kind = QUANTITIES[name].kind
+            factor = unit[kind].factor if kind in unit else 1.0  # angles are in degrees on both
+            assert state[name] == (None if picture[name] is None else pytest.approx(factor * picture[name]))
+
+
 def test_outcomes_have_the_numbers_and_units_of_json(told: Told, document: dict[str, Any]) -> None:
     tables = OUTCOMES.get(told.name, {})
     lines = [f"{name} = {table}" for name, (table, *_) in tables.items()]
@@ -263,6 +278,20 @@ def test_table_and_csv_of_a_life_have_the_numbers_of_json(life: Path, cycles: li
     for one, each in zip(scar_curves(result), cycles, strict=True):
         assert sorted(one["pressure [Pa]"]) == sorted(each["pressure"])
         assert each["largest_pressure"] >= max(each["pressure"])
+
+
+@pytest.mark.gate
+def test_the_live_page_of_a_life_has_the_numbers_of_json(life: Path, cycles: list[dict[str, Any]]) -> None:
+    found = recorded(live.record_life(fastpin.storage.load_wear(life)))["life"]["quantities"]
+    shown, unit = {each["name"]: each for each in found}, units(WORN)
+    for key, name in (
+        ("depth", "largest depth"),
+        ("volume", "worn volume"),
+        ("energy_per_cycle", "dissipated in a cycle"),
+        ("largest_pressure", "largest pressure"),
+    ):
+        factor = unit[shown[name]["kind"]].factor
+        assert [factor * value for value in shown[name]["values"]] == [each[key] for each in cycles]
 
 
 @pytest.mark.gate
