@@ -12,8 +12,7 @@ import numpy as np
 
 from fastpin.assess.outputs import ROUNDING, UNKNOWN, WHOLE, Curve, Output, map_of, of_fields
 from fastpin.assess.outputs import document as document_of
-from fastpin.model import angles, loads
-from fastpin.model.problem import Problem
+from fastpin.model import Problem, angles, loads
 from fastpin.model.units import PLAIN, units
 from fastpin.states.cycles import CYCLE_KINDS, Cycle
 from fastpin.states.load_cycle import NODE_KINDS, LoadCycle, NodeBehaviour

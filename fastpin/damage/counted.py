@@ -18,10 +18,9 @@ from fastpin.damage import plane_damage
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, PlaneCount
 from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve, life_shift, scattered
 from fastpin.errors import InputError
+from fastpin.model import FatigueConstants, Material
 from fastpin.model.assessment import USUAL, FatigueAssessment
 from fastpin.model.checks import alternatives, choice
-from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.materials import Material
 from fastpin.runtime.threads import in_chunks
 
 SPECTRUM_CRITERIA = tuple(name for name, criterion in FATIGUE_CRITERIA.items() if criterion.counting is not None)

@@ -18,9 +18,9 @@ from fastpin.damage.criteria import Criterion
 from fastpin.damage.histories import stress_history
 from fastpin.damage.hot_spots import NO_CRACK, Fatigue, evaluated, fatigue
 from fastpin.errors import InputError
+from fastpin.model import FatigueConstants, Problem
 from fastpin.model.assessment import checked_distance
 from fastpin.model.checks import choice, instance, numbers, positive
-from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import (
     Body,
     Points,
@@ -31,7 +31,6 @@ from fastpin.model.points import (
     near_rim,
     owner_of,
 )
-from fastpin.model.problem import Problem
 from fastpin.reading.stress import check_body
 from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.state import State

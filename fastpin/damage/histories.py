@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 
 from fastpin.elasticity.tractions import Tractions
-from fastpin.model import checks, loads
+from fastpin.model import Problem, checks, loads
 from fastpin.model.crack import residual_at
 from fastpin.model.points import Body, Points, further_parts, owner_of
-from fastpin.model.problem import Problem
 from fastpin.reading.stress import Stress, stress_at
 from fastpin.runtime.threads import in_threads
 from fastpin.states.reading_bounds import MAPPED

@@ -16,11 +16,8 @@ import numpy as np
 
 from fastpin.damage.laminates import MODES, characteristic_radius, first_ply_failure
 from fastpin.errors import InputError
-from fastpin.model import angles, checks, ties
-from fastpin.model.laminate import Laminate
+from fastpin.model import Laminate, Points, Problem, angles, checks, ties
 from fastpin.model.ply import PlyCriterion
-from fastpin.model.points import Points
-from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.strength import StrengthAssessment, check_strength
 from fastpin.states.state import State

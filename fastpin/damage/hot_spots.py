@@ -14,11 +14,8 @@ from fastpin.damage import lives
 from fastpin.damage.criteria import FATIGUE_CRITERIA, Criterion, CriterionValues
 from fastpin.damage.histories import stress_history
 from fastpin.errors import InputError
-from fastpin.model import angles, checks, ties
-from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.materials import Material
+from fastpin.model import FatigueConstants, Material, Problem, angles, checks, ties
 from fastpin.model.points import CRITERION, Body, Points, has_outline, is_beyond_bush, isotropic_material, owner_of
-from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
 from fastpin.reading.stress import check_body

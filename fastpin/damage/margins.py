@@ -12,11 +12,9 @@ from fastpin.damage.hot_spots import Fatigue, cycle_states
 from fastpin.damage.hot_spots import fatigue as fatigue_of
 from fastpin.damage.reserve import Goal, StressReserve
 from fastpin.errors import InputError
+from fastpin.model import FatigueAssessment, Problem, StrengthAssessment
 from fastpin.model.angles import from_bottom
-from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.points import edge_body, isotropic_bodies, owner_of, point_words
-from fastpin.model.problem import Problem
-from fastpin.model.strength import StrengthAssessment
 from fastpin.states.cycles import Cycle
 from fastpin.states.margins import Margin, part_of, walk_margins
 from fastpin.states.quantities import load_point, point_name

@@ -17,11 +17,9 @@ from fastpin.damage.histories import different_states, history_blocks, with_resi
 from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_points
 from fastpin.damage.lives import failure_probability
 from fastpin.errors import InputError
-from fastpin.model import checks, ties
+from fastpin.model import FatigueConstants, Problem, checks, ties
 from fastpin.model.assessment import USUAL, FatigueAssessment
-from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import CRITERION, Body, Points, isotropic_bodies, isotropic_material, material_of, owner_of
-from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.reading.stress import check_body
 from fastpin.states.choice import stops_of_one_problem

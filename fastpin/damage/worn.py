@@ -24,11 +24,10 @@ from fastpin.damage.criteria import Criterion
 from fastpin.damage.hot_spots import edge_angles, fatigue
 from fastpin.damage.race import Race
 from fastpin.errors import InputError
+from fastpin.model import FatigueConstants, Problem
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instances, numbers, positive
-from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import Body, Points, far_rim, near_rim, owner_of
-from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.ties import top_angle
 from fastpin.model.units import units

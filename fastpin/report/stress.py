@@ -11,8 +11,7 @@ from fastpin.assess.outputs import Curve
 from fastpin.damage.hole_strength import laminate_of
 from fastpin.damage.laminates import first_ply_failure
 from fastpin.errors import InputError
-from fastpin.model import angles, checks, points
-from fastpin.model.problem import Problem
+from fastpin.model import Problem, angles, checks, points
 from fastpin.model.units import units
 from fastpin.reading.stress import Stress
 from fastpin.states.quantities import load_point

@@ -16,14 +16,13 @@ from fastpin.assess.outputs import NUMBER, TEXT, UNKNOWN, WHOLE, Output
 from fastpin.assess.questions import QUESTIONS, margins_of
 from fastpin.bodies.body import BodyBase
 from fastpin.errors import ReadingError, reading
-from fastpin.model import Case, Problem, Profile, angles
+from fastpin.model import Case, Problem, Profile, SolveOptions, angles
 from fastpin.model.fields import FIELDS, Field
 from fastpin.model.keys import CASE
 from fastpin.model.keys import MATERIAL as MATERIAL_KINDS
 from fastpin.model.laminate import MODULI, ORDER
 from fastpin.model.loads import ACTING, LATER, LOAD_KIND, LOADS
 from fastpin.model.materials import STRENGTHS
-from fastpin.model.options import SolveOptions
 from fastpin.model.points import has_outline
 from fastpin.model.units import DEGREE, Unit, in_units, printed_loads, units
 from fastpin.solver.result import Result

@@ -10,12 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model import checks
+from fastpin.model import LoadHistory, Problem, checks
 from fastpin.model.acting import check_loads
 from fastpin.model.grid import MAX_NODES
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, Corner
-from fastpin.model.problem import Problem
 from fastpin.solver.task import as_history
 from fastpin.studies.loop_fit import LEAST, MOVED, IdentifyProgress, LoopFit, LoopModel, Start
 from fastpin.studies.measured_loop import REACTIONS, MeasuredLoop, measured_loop

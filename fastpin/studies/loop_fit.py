@@ -18,10 +18,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
+from fastpin.model import Grid, LoadHistory, Problem, SolveOptions
 from fastpin.runtime.extensions import optimize, special
 from fastpin.solver.errors import ArcError, ResolutionError, SolveError
 from fastpin.solver.solving import MemoryRecorder

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model import checks, loads
-from fastpin.model.problem import Problem
+from fastpin.model import Problem, checks, loads
 from fastpin.model.recorded import least_reversal, noise, turning_points
 from fastpin.runtime.extensions import interpolate
 from fastpin.tables.columns import ColumnChoice

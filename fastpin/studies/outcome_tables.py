@@ -26,10 +26,9 @@ from fastpin.casefile.profiles import read_wear
 from fastpin.casefile.toml_text import CaseText, NamedTable, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
-from fastpin.model import points, synonyms
+from fastpin.model import Profile, points, synonyms
 from fastpin.model.assessment import SPECTRA
 from fastpin.model.checks import alternatives, as_toml, file_path, string
-from fastpin.model.profile import Profile
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.margins import MARGINS
 from fastpin.states.quantities import QUANTITIES

@@ -25,10 +25,9 @@ import numpy as np
 from fastpin.assess.outputs import ROUNDING, Output, kept
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import FastpinError, InputError, printable
-from fastpin.model import angles, checks, ties
+from fastpin.model import Wear, angles, checks, ties
 from fastpin.model.points import Body, owner_of
 from fastpin.model.units import DEGREE, Unit
-from fastpin.model.wear import Wear
 from fastpin.states import NodeBehaviour, State, choice
 from fastpin.states.error_bars import known_bar, number_bar, value_bar
 from fastpin.states.quantities import QUANTITIES, size
