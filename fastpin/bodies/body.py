@@ -148,8 +148,8 @@ class BodyBase:
     ----------
     kind : str
         The name of the class in files.
-    keys : tuple of str
-        The keys of its section in case files.
+    keys : dict of str to str
+        The keys of its section in case files, each with the kind of its number, a key of ``units``; "" without a unit.
     arrays, named_arrays, texts : tuple of str
         The fields that are arrays, arrays by name, and long texts.
     controlled : tuple of str
@@ -157,7 +157,7 @@ class BodyBase:
     """
 
     kind: ClassVar[str]
-    keys: ClassVar[tuple[str, ...]] = ()
+    keys: ClassVar[Mapping[str, str]] = {}
     arrays: ClassVar[tuple[str, ...]] = ()
     named_arrays: ClassVar[tuple[str, ...]] = ()
     texts: ClassVar[tuple[str, ...]] = ()

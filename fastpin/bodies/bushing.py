@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -83,10 +83,10 @@ class Bushing(PlateBody):
     """
 
     kind = "bushing"
-    keys = (
-        *MATERIAL_KEYS, "outer_radius", "interference", "bonded", "friction", "ring_outer_radius", "support",
-        "reaction", "lug_file",
-    )  # fmt: skip
+    keys: ClassVar = dict.fromkeys(MATERIAL_KEYS, "") | {
+        "outer_radius": "length", "interference": "displacement", "bonded": "", "friction": "",
+        "ring_outer_radius": "length", "support": "", "reaction": "length", "lug_file": "",
+    }  # fmt: skip
     controlled = ("outer_radius", "interference", "seat_friction")
     title = "plate with a bush"
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -100,7 +100,7 @@ class Compliance(PlateBody):
     """
 
     kind = "compliance"
-    keys = ("file",)
+    keys: ClassVar = {"file": ""}
     arrays, named_arrays, texts = ("matrix",), ("columns",), ("outline",)
     edge_only = True
     outer_radius = math.inf

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -50,7 +50,7 @@ class Tube(PinBody):
     """
 
     kind = "tube"
-    keys = ("bore_radius", "load")
+    keys: ClassVar = {"bore_radius": "length", "load": ""}
     controlled = ("pin_bore", "bore_load")
 
     bore_radius: float

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class Plate(PlateBody):
     """
 
     kind = "plate"
-    keys = ("reaction",)
+    keys: ClassVar = {"reaction": "length"}
     title = "infinite plate"
     is_infinite = True
     outer_radius = math.inf

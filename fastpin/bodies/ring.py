@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, Self
+from typing import ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 
@@ -47,7 +47,7 @@ class Ring(PlateBody):
     """
 
     kind = "ring"
-    keys = ("outer_radius", "support")
+    keys: ClassVar = {"outer_radius": "length", "support": ""}
     controlled = ("outer_radius", "support")
     title = "ring lug"
 

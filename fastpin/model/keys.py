@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from fastpin.bodies.body import BodyBase
+from fastpin.bodies.kinds import PINS, PLATES
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOAD_KIND
 
@@ -25,6 +27,11 @@ KeyKinds = str | Mapping[str, Any]
 def of(kind: str, *keys: str) -> dict[str, str]:
     """Return the kinds of keys of one kind."""
     return dict.fromkeys(keys, kind)
+
+
+def of_bodies(made: Mapping[str, type[BodyBase]]) -> dict[str, str]:
+    """Return the kinds of the keys of some bodies. Those of the material of a bush are left out."""
+    return {key: kind for each in made.values() for key, kind in each.keys.items() if kind}
 
 
 LAW = of("stress intensity", "threshold_range", "toughness", "unit") | {
@@ -66,10 +73,8 @@ CASE: dict[str, Any] = {
     "dundurs": {"beta_star": "compliance"},
     "contact": {name: field.kind for name, field in FIELDS.items() if field.place == "[contact]" and field.kind},
     "gap": {"hole": profile("displacement"), "pin": profile("displacement")},
-    "pin_body": {"bore_radius": "length"},
-    "plate_body": MATERIAL
-    | of("length", "outer_radius", "ring_outer_radius", "reaction")
-    | {"interference": "displacement"},
+    "pin_body": of_bodies(PINS),
+    "plate_body": MATERIAL | of_bodies(PLATES),
     "load": LOAD_KIND | {"mean": LOAD_KIND, "amplitude": LOAD_KIND},
     "wear": {key: profile("wear coefficient") for key in ("coefficient", "pin", "plate")},
     "fatigue": {"length": "length", "residual_stress": RESIDUAL},

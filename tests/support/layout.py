@@ -20,6 +20,7 @@ ABOVE_BODIES = tuple(
         "crack",
         "doubts",
         "history",
+        "keys",
         "points",
         "problem",
         "recorded",
