@@ -318,9 +318,9 @@ class PlateBody(BodyBase):
         return HELD if self.support == "held" else FREE
 
     @property
-    def has_inside(self) -> bool:
-        """Whether the stress is known in the whole body."""
-        return True
+    def near_only(self) -> str:
+        """Why the stress is known up to :attr:`reach` only; empty if it is known in the whole body."""
+        return ""
 
     @property
     def reach(self) -> float:
@@ -329,7 +329,7 @@ class PlateBody(BodyBase):
 
     def contains(self, z: np.ndarray) -> np.ndarray:
         """Whether the stress is known at points outside the hole, complex (m,), in radii of its own hole."""
-        return np.ones(z.shape, dtype=bool)
+        return np.abs(z) <= self.reach * (1.0 + 1e-14)
 
     @property
     def rims(self) -> tuple[np.ndarray, list[str]]:

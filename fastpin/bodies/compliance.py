@@ -374,8 +374,9 @@ class Compliance(PlateBody):
         return moved + complex(x, y)
 
     @property
-    def has_inside(self) -> bool:
-        return bool(self.outline)
+    def near_only(self) -> str:
+        words = "a compliance gives the stress near the hole only, a file with the outline everywhere"
+        return "" if self.outline else words
 
     def drawing(self, rim: Rim) -> list[Shape]:
         return [Shape("outline", rim.ratio, "lug", self.geometry)] if self.outline else super().drawing(rim)
@@ -420,9 +421,7 @@ class Compliance(PlateBody):
         return self._lugs.plate_field(self)
 
     def contains(self, z: np.ndarray) -> np.ndarray:
-        if self.outline:
-            return np.asarray(self.geometry.contains(z * self.hole_radius))
-        return np.abs(z) <= self.reach * (1.0 + 1e-14)
+        return np.asarray(self.geometry.contains(z * self.hole_radius)) if self.outline else super().contains(z)
 
     @cached_property
     def reach(self) -> float:

@@ -198,9 +198,9 @@ def check_crack(problem: Problem, crack: CrackGrowth) -> None:
 
 def check_inside(problem: Problem, body: str) -> None:
     """Raise :class:`InputError` if the stress of the body is known near its hole only."""
-    if not problem.plate_body.lug.has_inside and (body == "seat" or problem.joint.bush is None):
-        words = "a compliance gives the stress near its hole only, and a crack needs all of it"
-        raise InputError("body", f"{words}: a file with the outline gives it everywhere")
+    why = problem.plate_body.lug.near_only
+    if why and (body == "seat" or problem.joint.bush is None):
+        raise InputError("body", f"{why}; a crack needs all of it")
 
 
 def law_of(problem: Problem, crack: CrackGrowth) -> KnownLaw:

@@ -138,13 +138,12 @@ def _check_inside(problem: Problem, z: np.ndarray) -> None:
     """Check that the stress of the plate is known at points, complex, in hole radii."""
     lug, hole, length = problem.plate_body.lug, problem.joint.bush or 1.0, units(problem)["length"]
     outside = z[~lug.contains(z / hole)]
-    if outside.size and lug.has_inside:
+    if outside.size and lug.near_only:
+        known = length.text(lug.reach * hole * problem.hole_radius)
+        raise InputError("points", f"{lug.near_only}; here up to the radius {known}")
+    if outside.size:
         x, y = (length.text(value * problem.hole_radius) for value in (outside[0].real, outside[0].imag))
         raise InputError("points", f"must lie in the plate, and x = {x}, y = {y} does not")
-    if outside.size:
-        known = length.text(lug.reach * hole * problem.hole_radius)
-        words = f"a compliance gives the stress near the hole only: up to the radius {known}"
-        raise InputError("points", f"{words}; a file with the outline gives it everywhere")
 
 
 def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:

@@ -159,8 +159,7 @@ def _check_depth(depth: float, problem: Problem, body: points.Body) -> None:
     if math.isinf(wall):
         raise InputError("depth", f"must be above 0, not {depth:g}")
     if far is None:
-        known = problem.plate_body.lug.has_inside
-        why = "the nearest other edge" if known else "a compliance gives the stress near its hole only"
+        why = problem.plate_body.lug.near_only or "the nearest other edge"
         words = f"at most {wall:.3g} radii: {why}"
         raise InputError("depth", f"must be above 0 and {words}; not {depth:g}")
     if far == 0.0:

@@ -155,7 +155,7 @@ def test_points_outside_are_refused():
     assert refusal(ring, Points.at_depth(1.1, 0.0), "pin") == "depth: must be at most the radius of 1 in the pin"
     words = "points: the reaction acts at one of the points: the stress there is infinite"
     assert refusal(problem("reaction"), Points.at_xy([0.5, 2.0], [3.0, 2.0])) == words
-    words = "points: a compliance gives the stress near the hole only: up to the radius "
+    words = "points: a compliance gives the stress near the hole only, a file with the outline everywhere; here up to "
     assert refusal(problem("compliance"), Points.at_depth([0.0, 0.9], 0.0)).startswith(words)
     rigid = Problem.from_load_parameter(
         MaterialPair(Material(2.1, 0.3), Material.rigid()), 0.6, 0.3, plate_body=Bushing(BRONZE, 1.25)
