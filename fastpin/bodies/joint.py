@@ -42,7 +42,7 @@ class BodyPair:
         The hole's edge is "plate", also in a bush. A bush as the pin of its seat has no stress there: its stress is
         that of its joint.
         """
-        edges = {"plate": "plate"} if self.bush is None else {"plate": "bush", "seat": "plate"}
+        edges = {"plate": "plate"} if self.plate_body.bush is None else {"plate": "bush", "seat": "plate"}
         return edges if self.pin_body.is_bush else {**edges, "pin": "pin"}
 
     @cached_property
@@ -56,10 +56,10 @@ class BodyPair:
         return Rim(self.radius, 1.0, self.pair.plate, self.pair.plane)
 
     @property
-    def bush(self) -> float | None:
-        """Outer radius of the bush over R; None without a bush."""
+    def seat_ratio(self) -> float:
+        """Radius of the plate's own hole over R: that of the seat of a bush; 1 without a bush."""
         bush = self.plate_body.bush
-        return None if bush is None else bush.outer_radius / self.radius
+        return 1.0 if bush is None else bush.outer_radius / self.radius
 
     @property
     def pin_first(self) -> First:

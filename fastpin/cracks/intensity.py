@@ -225,8 +225,8 @@ class CrackedEdge(NamedTuple):
         body = crack.body
         check_body(problem, body)
         isotropic_material("body", problem, body, "a stress intensity")
-        near, bush, lug = near_rim(problem, body), problem.joint.bush, problem.plate_body.lug
-        in_bush, wall = body == "plate" and bush is not None, wall_of(problem, body)
+        near, lug, wall = near_rim(problem, body), problem.plate_body.lug, wall_of(problem, body)
+        in_bush = body == "plate" and problem.plate_body.bush is not None
         check_inside(problem, body)
         is_free = not in_bush and (math.isinf(wall) or lug.outer_kind == FREE)
         others = other_edges(problem, crack)
@@ -265,7 +265,7 @@ class CrackedEdge(NamedTuple):
         """Doubts about the kernel for a crack of this length, m."""
         found, deep = [], self.depth(crack.angle, longest) / self.wall
         if not self.is_free and deep > UNKNOWN_FROM:
-            what = "bush ends" if self.body == "plate" and self.problem.joint.bush is not None else "rim is held"
+            what = "bush ends" if self.body == "plate" and self.problem.plate_body.bush is not None else "rim is held"
             reason = f"reaches {deep:.2f} of the wall; K there does not know that the {what}"
             found.append(InputWarning(field, f"{reason}: trust it up to {UNKNOWN_FROM:g}"))
         if self.body == "seat" and len(self.problem.interfaces) == 1:

@@ -58,7 +58,7 @@ def plate_stress(
     inside = ~beyond
     found[:, inside] = hole_stress(kolosov, tractions, none, theta[inside], depth[inside])
     found[:, inside] += polar(walls.surface, theta[inside], 1.0 + depth[inside])
-    below = 1.0 + depth[beyond] - (problem.joint.bush or 1.0)
+    below = 1.0 + depth[beyond] - problem.joint.seat_ratio
     found[:, beyond] = seat_stress(problem, tractions, remote, theta[beyond], below)
     return found
 
@@ -76,10 +76,9 @@ def seat_stress(
         Distances of the points from the seat of the bush, in units of R; at least 0.
     """
     joint, walls = problem.joint, plate_walls(problem, tractions, tuple(float(value) for value in remote))
-    assert joint.bush is not None
     assert walls is not None
     assert walls.lug is not None
-    below = depth / joint.bush
+    below = depth / joint.seat_ratio
     found = polar(walls.lug, theta, 1.0 + below)
     if joint.plate_body.lug.is_infinite:
         found += hole_stress(joint.pair.plate_kolosov, Tractions(()), remote[:3], theta, below)

@@ -241,7 +241,7 @@ def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: st
 def _draw_edges(panel: Axes, state: State, most: float) -> None:
     """Draw the edges of a plate of any outline up to a radius, and leave out what is beyond them."""
     geometry = state.problem.plate_body.lug.geometry
-    edges = [] if geometry is None else [(state.problem.joint.bush or 1.0) * edge for edge in geometry.edge_lines]
+    edges = [] if geometry is None else [state.problem.joint.seat_ratio * edge for edge in geometry.edge_lines]
     for edge in edges:
         seen = np.where(np.abs(edge) <= 1.01 * most, edge, math.nan)
         panel.plot(seen.real, seen.imag, color="0.2", linewidth=0.6)

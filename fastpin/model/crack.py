@@ -107,9 +107,8 @@ def edge_of(body: str) -> Literal["plate", "seat"]:
 
 def wall_of(problem: Problem, body: str) -> float:
     """Depth of a body behind its edge, in radii of the edge; infinite without a rim."""
-    bush = problem.joint.bush
-    if body == "plate" and bush is not None:
-        return bush - 1.0
+    if body == "plate" and problem.plate_body.bush is not None:
+        return problem.joint.seat_ratio - 1.0
     far = far_rim(problem, edge_of(body))
     return math.inf if far is None else far / near_rim(problem, edge_of(body)) - 1.0
 
@@ -129,7 +128,7 @@ def other_edges(problem: Problem, crack: Any) -> Any:
     InputError
         If the place of the crack is no mouth, or the plate has no other edges.
     """
-    in_bush = crack.body == "plate" and problem.joint.bush is not None
+    in_bush = crack.body == "plate" and problem.plate_body.bush is not None
     edges = None if in_bush else problem.plate_body.lug.other_edges
     if crack.place is None:
         return edges
@@ -199,7 +198,7 @@ def check_crack(problem: Problem, crack: CrackGrowth) -> None:
 def check_inside(problem: Problem, body: str) -> None:
     """Raise :class:`InputError` if the stress of the body is known near its hole only."""
     why = problem.plate_body.lug.near_only
-    if why and (body == "seat" or problem.joint.bush is None):
+    if why and (body == "seat" or problem.plate_body.bush is None):
         raise InputError("body", f"{why}; a crack needs all of it")
 
 

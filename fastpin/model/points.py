@@ -136,7 +136,7 @@ class Points(ReadOnly):
 
 def _check_inside(problem: Problem, z: np.ndarray) -> None:
     """Check that the stress of the plate is known at points, complex, in hole radii."""
-    lug, hole, length = problem.plate_body.lug, problem.joint.bush or 1.0, units(problem)["length"]
+    lug, hole, length = problem.plate_body.lug, problem.joint.seat_ratio, units(problem)["length"]
     outside = z[~lug.contains(z / hole)]
     if outside.size and lug.near_only:
         known = length.text(lug.reach * hole * problem.hole_radius)
@@ -151,8 +151,9 @@ def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:
 
     False without a bush. The rim of the bush belongs to it, also where rounding makes its depth larger.
     """
-    bush = problem.joint.bush
-    return np.zeros(depth.shape, dtype=bool) if bush is None else 1.0 + depth > bush * (1.0 + ROUNDING)
+    if problem.plate_body.bush is None:
+        return np.zeros(depth.shape, dtype=bool)
+    return 1.0 + depth > problem.joint.seat_ratio * (1.0 + ROUNDING)
 
 
 def bodies_of(problem: Problem) -> tuple[Body, ...]:
@@ -263,7 +264,7 @@ def point_words(problem: Problem, body: str, theta: float, depth: float, digits:
 
 def near_rim(problem: Problem, body: Body) -> float:
     """Radius of a body's edge over the hole's radius: above 1 at the seat of a bush."""
-    return problem.joint.bush or 1.0 if body == "seat" else 1.0
+    return problem.joint.seat_ratio if body == "seat" else 1.0
 
 
 def far_rim(problem: Problem, body: Body) -> float | None:
@@ -277,5 +278,5 @@ def far_rim(problem: Problem, body: Body) -> float | None:
 def known_depth(problem: Problem, body: Body) -> float:
     """Depth of a body below its edge, over the hole's radius, as far as its stress is known; infinite without a rim."""
     near, far = near_rim(problem, body), far_rim(problem, body)
-    known = math.inf if body == "pin" else problem.plate_body.lug.reach * (problem.joint.bush or 1.0) - near
+    known = math.inf if body == "pin" else problem.plate_body.lug.reach * problem.joint.seat_ratio - near
     return known if far is None else min(known, abs(far - near))

@@ -60,8 +60,8 @@ def hoop_peak(
         bypass = open_hole_hoop(problem, np.array([sxx, syy, sxy]), angle, body)
     place = angle if closed.any() or value != 0.0 else math.nan
     # the net section beside the hole; infinite for an infinite plate, a bush and the pin
-    is_own, edge = body == ("seat" if problem.joint.bush else "plate"), near_rim(problem, body) * problem.hole_radius
-    section = problem.plate_body.lug.net_section(edge) if is_own else math.inf
+    is_own = body == ("seat" if problem.plate_body.bush else "plate")
+    section = problem.plate_body.lug.net_section(rim * problem.hole_radius) if is_own else math.inf
     return HoopPeak(value, place, resolved, bearing, gross, bypass, value, net_stress=force / section)
 
 

@@ -244,7 +244,7 @@ def _edge_columns(problem: Problem, states: Sequence[State]) -> list[outputs.Col
     """Return columns on a plate of any outline: the largest hoop stress at its hole and beyond, and the edge there."""
     if not has_outline(problem):
         return []
-    hole = "peak_hoop" if problem.joint.bush is None else "peak_hoop_seat"
+    hole = "peak_hoop" if problem.plate_body.bush is None else "peak_hoop_seat"
     found = [quantity_column(problem, states, name, 4) for name in (hole, "peak_hoop_outline")]
     return [*found, ("on the edge", "", [state.outline_peak.edge or "-" for state in states])]
 
@@ -343,7 +343,7 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     `states` are all kept states, or those of their extremes. Of a bush that slips it is the smallest pressure only:
     see :func:`seat_lines`.
     """
-    if problem.joint.bush is None or not any(state.in_contact for state in states):
+    if problem.plate_body.bush is None or not any(state.in_contact for state in states):
         return ""
     fits = [(state, state.bush_fit()) for state in states]
     state, fit = fits[ties.top([-fit.open_margin for _, fit in fits])]

@@ -214,7 +214,7 @@ def field_curves(
     drawn = tuple(each for each in bodies_of(state, body) if each != "seat")  # the plate has it
     if component == UTILIZATION:
         drawn = ("plate",)
-    lug, bush = state.problem.plate_body.lug, state.problem.joint.bush or 1.0
+    lug, bush = state.problem.plate_body.lug, state.problem.joint.seat_ratio
     lines = [] if lug.geometry is None else lug.geometry.edge_lines
     if lines:  # a point takes longer there
         fineness //= 2

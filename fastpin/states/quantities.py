@@ -94,7 +94,7 @@ def _hoop(label: str, kind: str, name: str, words: str, edge: Body = "plate", is
 def of_bush(label: str, kind: str, name: str, words: str = "") -> Quantity:
     """A reading of the interface between bush and plate, by its name there. The margin of slip is that of a seat."""
     return only_where(
-        lambda problem: (problem.seat if name == "slip_margin" else problem.joint.bush) is not None,
+        lambda problem: (problem.seat if name == "slip_margin" else problem.plate_body.bush) is not None,
         Quantity(label, kind, lambda state: float(getattr(state.bush_fit(), name)), words),
     )
 

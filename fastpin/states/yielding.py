@@ -64,7 +64,7 @@ class Circle(NamedTuple):
 
 def circles(problem: Problem) -> Iterator[Circle]:
     """The circles of a problem. A rigid body has none."""
-    if problem.joint.bush is not None:
+    if problem.plate_body.bush is not None:
         wall = near_rim(problem, "seat") - 1.0
         if not problem.surfaces.plate.is_rigid:
             yield from (Circle("bush", "plate", depth, "bore of the bush") for depth in _depths(wall))
@@ -87,7 +87,7 @@ def _depths(wall: float) -> tuple[float, ...]:
 
 def further_points(problem: Problem) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Points on the further edges of a plate: angles, rad, depths in units of the hole's radius, and names of edges."""
-    (z, names), hole = problem.plate_body.lug.rims, problem.joint.bush or 1.0
+    (z, names), hole = problem.plate_body.lug.rims, problem.joint.seat_ratio
     return np.angle(z), hole * (np.abs(z) - 1.0), names
 
 

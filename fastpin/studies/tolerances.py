@@ -448,7 +448,7 @@ def _nominal(base: BaseCase, case: Case, name: str) -> float | None:
 def _usual_outcomes(problem: Problem) -> Outcomes:
     """Return the outcomes of a plan without any."""
     without = set() if "plate" in points.elastic_bodies(problem) else {"largest_hoop"}
-    if problem.joint.bush is None:
+    if problem.plate_body.bush is None:
         without.add("least_bush_pressure")
     return outcomes_from({name: table for name, table in USUAL_OUTCOMES.items() if name not in without})
 

@@ -124,7 +124,7 @@ def test_bodies_that_hinder_one_another_are_those_of_lame(name, plane):
     assert abs(grown) > 1e-6
     assert warm.pressure == pytest.approx(fitted.pressure, rel=1e-9)
     coefficients, twice_shear, thermal = lame(problem)
-    seat = problem.joint.bush * RADIUS if problem.joint.bush else RADIUS
+    seat = problem.joint.seat_ratio * RADIUS
     for radius in (RADIUS, 13.9e-3, 14.1e-3, 24.9e-3):
         wall = -1 if radius > seat else 0
         (a, b), shear, by_strain = coefficients[wall], twice_shear[wall], thermal[wall]
