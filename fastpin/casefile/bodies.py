@@ -77,9 +77,8 @@ def keys_of(kinds: Kinds) -> tuple[str, ...]:
 
 
 def implied_kind(kinds: Kinds, table: Mapping[str, Any]) -> str:
-    """The kind of body that the keys of a table tell: the first kind that has all of them."""
-    known = {key for key in table if any(key in made.keys for made in kinds.values())}
-    return next((kind for kind, made in kinds.items() if known <= set(made.keys)), list(kinds)[-1])
+    """The kind of body that the keys of a table tell: the first kind that has most of them."""
+    return max(kinds, key=lambda kind: len(table.keys() & kinds[kind].keys))
 
 
 def read_bodies(
