@@ -24,6 +24,25 @@ class BodyPair:
     plate_body: PlateBody
     pin_load: PinLoad
 
+    def check(self, dimensionless: bool) -> None:
+        """Check that pin and plate fit the hole and their materials.
+
+        Raises
+        ------
+        InputError
+            If a body is of another class, does not fit, or the load can't act on the pin.
+        """
+        if not isinstance(self.pin_body, PinBody):
+            raise InputError("pin_body", f"must be {_names(PINS)}")
+        self.pin_body.check(self.radius)
+        if not isinstance(self.plate_body, PlateBody):
+            raise InputError("plate_body", f"must be {_names(PLATES)}")
+        self.plate_body.check(self.radius, dimensionless)
+        self.pin_body.check_load(self.pin_load)
+        if not self.pair.plate.is_isotropic and self.plate_body != INFINITE_PLATE:
+            raise InputError("plate_body", "must be an infinite plate if it is a laminate, without bush and reaction")
+        self.plate_body.check_pair(self.pair, self.radius, dimensionless)
+
     @cached_property
     def surfaces(self) -> MaterialPair:
         """The materials of the two surfaces in contact: ``pair``, or pin and bush."""
@@ -128,28 +147,6 @@ class BodyPair:
         own_plate, coupling_plate = self.plate_body.translation(self.hole, gauge)
         unit = 4.0 * math.pi * self.surfaces.beta_star
         return (own + own_plate) / unit, (coupling + coupling_plate) / unit
-
-
-def check_bodies(
-    pair: MaterialPair, radius: float, pin_body: PinBody, plate_body: PlateBody, pin_load: PinLoad, dimensionless: bool
-) -> None:
-    """Check that pin and plate fit the hole of this radius, m, and their materials.
-
-    Raises
-    ------
-    InputError
-        If a body is of another class, does not fit, or the load can't act on the pin.
-    """
-    if not isinstance(pin_body, PinBody):
-        raise InputError("pin_body", f"must be {_names(PINS)}")
-    pin_body.check(radius)
-    if not isinstance(plate_body, PlateBody):
-        raise InputError("plate_body", f"must be {_names(PLATES)}")
-    plate_body.check(radius, dimensionless)
-    pin_body.check_load(pin_load)
-    if not pair.plate.is_isotropic and plate_body != INFINITE_PLATE:
-        raise InputError("plate_body", "must be an infinite plate if it is a laminate, without bush and reaction")
-    plate_body.check_pair(pair, radius, dimensionless)
 
 
 def without_units(pair: MaterialPair, plate_body: PlateBody) -> tuple[PlateBody, MaterialPair]:

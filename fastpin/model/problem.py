@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from fastpin.bodies.body import BodyBase, PinBody, PinLoad, PlateBody
-from fastpin.bodies.joint import BodyPair, check_bodies, without_units
+from fastpin.bodies.joint import BodyPair, without_units
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.errors import InputError
 from fastpin.model.checks import (
@@ -166,8 +166,8 @@ class Problem:
             limits = f"must lie between minus and plus the hole radius {radius:g}"
             raise InputError("clearance", f"{limits}, not {clearance:g}")
         friction = self._checked_friction(radius)
-        check_bodies(self.pair, radius, self.pin_body, self.plate_body, self.pin_load, self.dimensionless)
         set_fields(self, hole_radius=radius)
+        self.joint.check(self.dimensionless)
         if clearance + self.joint.press_fit[1] < 0.0 and self.is_incompressible:
             incompressible = "a pin with nu = 0.5 in a rigid plate keeps its area"
             if self.has_bodies:
