@@ -10,7 +10,7 @@ from typing import Any
 
 import fastpin
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
-from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
+from fastpin.bodies.kinds import PINS, PLATES
 from fastpin.casefile.reader import EXAMPLE, KEYS, ROOT_KEYS
 from fastpin.model import FatigueConstants, InitialGap, Wear
 from fastpin.model.loads import LOAD
@@ -28,8 +28,8 @@ CLASSES: dict[str, tuple[type, ...]] = {
     "pin": (fastpin.Material,),
     "plate": (fastpin.Material,),
     "contact": (fastpin.Problem, fastpin.MaterialPair),
-    "pin_body": (Tube,),
-    "plate_body": (Ring, Bushing, Plate, Compliance, fastpin.Material),
+    "pin_body": (*PINS.values(),),
+    "plate_body": (*PLATES.values(), fastpin.Material),
     "gap": (InitialGap,),
     "wear": (Wear,),
     "solve": (fastpin.SolveOptions,),
@@ -38,7 +38,8 @@ CLASSES: dict[str, tuple[type, ...]] = {
 
 OTHER_WORDS = {
     "title": "title in tables and figures",
-    "kind": 'kind of body, where its keys do not tell: "disk" or "tube"; "plate", "ring", "bushing" or "compliance"',
+    "kind": "kind of body, where its keys do not tell: "
+    + "; ".join(", ".join(f'"{kind}"' for kind in kinds) for kinds in (PINS, PLATES)),
     "mean": "table of loads, the mean of a harmonic cycle",
     "amplitude": "table of loads, the amplitude of a harmonic cycle",
     "phase": "table of phases, degrees; a positive phase is ahead",

@@ -30,8 +30,8 @@ def of(kind: str, *keys: str) -> dict[str, str]:
 
 
 def of_bodies(made: Mapping[str, type[BodyBase]]) -> dict[str, str]:
-    """Return the kinds of the keys of some bodies. Those of the material of a bush are left out."""
-    return {key: kind for each in made.values() for key, kind in each.keys.items() if kind}
+    """Return the kinds of the keys of some bodies, without those of the material of a bush."""
+    return {key: kind for each in made.values() for key, kind in each.keys.items()}
 
 
 LAW = of("stress intensity", "threshold_range", "toughness", "unit") | {
@@ -74,7 +74,7 @@ CASE: dict[str, Any] = {
     "contact": {name: field.kind for name, field in FIELDS.items() if field.place == "[contact]" and field.kind},
     "gap": {"hole": profile("displacement"), "pin": profile("displacement")},
     "pin_body": of_bodies(PINS),
-    "plate_body": MATERIAL | of_bodies(PLATES),
+    "plate_body": of_bodies(PLATES) | MATERIAL,
     "load": LOAD_KIND | {"mean": LOAD_KIND, "amplitude": LOAD_KIND},
     "wear": {key: profile("wear coefficient") for key in ("coefficient", "pin", "plate")},
     "fatigue": {"length": "length", "residual_stress": RESIDUAL},

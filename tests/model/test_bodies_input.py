@@ -10,12 +10,14 @@ import pytest
 
 from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, SolveOptions
 from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
+from fastpin.bodies.kinds import PLATES
 from fastpin.model.acting import check_arc, check_loads
 from tests.support.bodies import soft_plate
 from tests.support.refusals import refused
 
 PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
 BRONZE = Material(110e9, 0.34, "bronze")
+PLATE_NAMES = [f"a {made.__name__}" for made in PLATES.values()]
 SOFT = Material(1e-20, 0.3)  # softer than steel by more than any two moduli may differ
 HELD, FREE = Ring(0.02), Ring(0.02, "uniform")
 
@@ -62,7 +64,11 @@ def test_a_hollow_pin_carries_a_moment_and_may_be_held(load, rotation):
     ("make", "field", "words"),
     [
         (lambda: problem(pin_body=Ring(0.02)), "pin_body", "must be a Disk or a Tube"),
-        (lambda: problem(plate_body=Tube(0.005)), "plate_body", "must be a Plate, a Ring, a Bushing or a Compliance"),
+        (
+            lambda: problem(plate_body=Tube(0.005)),
+            "plate_body",
+            f"must be {', '.join(PLATE_NAMES[:-1])} or {PLATE_NAMES[-1]}",
+        ),
         (lambda: problem(plate_body=Bushing(SOFT, 0.0125)), "material", "the moduli of pin and bush must not differ"),
         (lambda: Bushing(BRONZE, math.nan), "outer_radius", "must be a finite number"),
         (lambda: Plate((1.0,)), "reaction", "must be a point"),

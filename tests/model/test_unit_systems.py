@@ -188,13 +188,13 @@ def test_every_kind_of_a_key_is_a_kind_of_quantity():
 
 
 WITHOUT_UNIT = """
-alpha angle angles arc at author axis beta between bodies body bonded compressive_slope confidence constraint
+alpha angle angles arc at author axis beta between bodies body compressive_slope confidence constraint
 convention count criterion csv curve curve_a curve_b curve_kt curve_m curve_samples curve_scatter cycles date drive
-ductility_exponent error_bars expansion exponent failure fatigue_ductility file friction increments keep kind knee
-law layup life load load_parameter lug_file m material method n name nodes normal_stress_factor nu nu12 nu_pin over
+ductility_exponent error_bars expansion exponent failure fatigue_ductility friction increments keep kind knee
+law layup life load_parameter m material method n name nodes normal_stress_factor nu nu12 nu_pin over
 p phase pin_load plane points project q reliability repeat revision rigid rotation shear_ductility_exponent
 shear_fatigue_ductility shear_strength_exponent shortcut skip slip_sums small_cycles source straight
-strength_exponent stress_level support theta threshold_exponent threshold_slope tolerance turning_points
+strength_exponent stress_level theta threshold_exponent threshold_slope tolerance turning_points
 """
 """Keys that have no unit, or the same one in every system."""
 
