@@ -10,7 +10,6 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from fastpin.bodies.body import BodyBase
 from fastpin.bodies.kinds import PINS, PLATES
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOAD_KIND
@@ -27,11 +26,6 @@ KeyKinds = str | Mapping[str, Any]
 def of(kind: str, *keys: str) -> dict[str, str]:
     """Return the kinds of keys of one kind."""
     return dict.fromkeys(keys, kind)
-
-
-def of_bodies(made: Mapping[str, type[BodyBase]]) -> dict[str, str]:
-    """Return the kinds of the keys of some bodies, without those of the material of a bush."""
-    return {key: kind for each in made.values() for key, kind in each.keys.items()}
 
 
 LAW = of("stress intensity", "threshold_range", "toughness", "unit") | {
@@ -73,8 +67,8 @@ CASE: dict[str, Any] = {
     "dundurs": {"beta_star": "compliance"},
     "contact": {name: field.kind for name, field in FIELDS.items() if field.place == "[contact]" and field.kind},
     "gap": {"hole": profile("displacement"), "pin": profile("displacement")},
-    "pin_body": of_bodies(PINS),
-    "plate_body": of_bodies(PLATES) | MATERIAL,
+    "pin_body": {key: kind for made in PINS.values() for key, kind in made.keys.items()},
+    "plate_body": {key: kind for made in PLATES.values() for key, kind in made.keys.items()} | MATERIAL,
     "load": LOAD_KIND | {"mean": LOAD_KIND, "amplitude": LOAD_KIND},
     "wear": {key: profile("wear coefficient") for key in ("coefficient", "pin", "plate")},
     "fatigue": {"length": "length", "residual_stress": RESIDUAL},
