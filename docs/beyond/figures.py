@@ -1,4 +1,4 @@
-"""Draw figures beyond the paper: ``python -m docs.beyond.figures memory rings --output out`` from a copy of the source.
+"""Draw figures beyond the paper: ``python -m docs.beyond.figures memory klang --output out`` from a copy of the source.
 
 Each figure is a ``PaperFigure`` in ``FIGURES`` of a file beside this one. Its picture, NAME.png, and its numbers,
 NAME.csv, are written. Without a name, all of them are drawn.
@@ -11,7 +11,9 @@ from pathlib import Path
 
 from docs.beyond import (
     finite_bodies,
+    handbook_formulas,
     interference,
+    klang,
     lug_concentration,
     memory,
     rectangular_lug,
@@ -33,6 +35,8 @@ FIGURES: dict[str, PaperFigure] = {
         lug_concentration,
         interference,
         regimes,
+        klang,
+        handbook_formulas,
     )
     for figure in subject.FIGURES
 }

@@ -434,10 +434,7 @@ def add_benchmarks(commands: Any) -> None:
     benchmarks = _command(commands, "benchmarks", "published", "run", "compare with problems that others publish")
     _option(benchmarks, "names", "NAME", "names of benchmarks, see --list; without one: all of them", nargs="*")
     _switch(benchmarks, "--list", "print the names and titles of the benchmarks")
-    words = "also write the numbers as CSV, and figures, to this directory"
-    _option(benchmarks, "-o --output", "DIR", words, Path)
-    words = "with -o: png, pdf or svg (repeat the option for several formats; default: png)"
-    _option(benchmarks, "--format", "FORMAT", words, action="append")
+    _option(benchmarks, "-o --output", "DIR", "also write the numbers as CSV to this directory", Path)
     _add_json(benchmarks, "write the numbers as JSON")
 
 

@@ -11,7 +11,6 @@ from typing import Any
 from fastpin.assess.outputs import whole_document
 from fastpin.cli.progress import Bar
 from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, as_options, check_outputs, fail, say, write_outputs
-from fastpin.errors import InputError
 from fastpin.published import catalog, records
 from fastpin.report.schema import BENCHMARKS
 
@@ -23,12 +22,9 @@ def run(options: argparse.Namespace) -> int:
         say(*(f"{name:<{width}}  {benchmark.title}" for name, benchmark in catalog.BENCHMARKS.items()))
         return EXIT_OK
     names = list(dict.fromkeys(catalog.benchmark_name(name) for name in options.names or catalog.BENCHMARKS))
-    formats = list(dict.fromkeys(options.format or ("png",)))
     if options.output is not None:
         with as_options():
-            catalog.check_benchmarks(names, options.output, formats)
-    elif options.format:
-        raise InputError("--format", "has a meaning with -o only")
+            catalog.check_files([f"{name}.csv" for name in names], options.output)
     check_outputs({"--json": options.json})
     found: dict[str, Any] = {}
 
@@ -40,9 +36,8 @@ def run(options: argparse.Namespace) -> int:
             shown = records.table(chosen.title, chosen.statement, chosen.sources, outcome.rows)
             bar.write(*f"{name}: {shown}".split("\n"), "", file=sys.stdout)
         if options.output is not None:
-            files = catalog.write_benchmark(name, outcome, options.output, formats)
             to = sys.stderr if options.json == "-" else sys.stdout
-            bar.write(f"{name}: {', '.join(map(str, files))}", "", file=to)
+            bar.write(f"{name}: {catalog.write_benchmark(name, outcome, options.output)}", "", file=to)
 
     code = _each(names, "benchmark", work)
     return code or write_outputs([], options.json, lambda: whole_document(BENCHMARKS, found, {}))

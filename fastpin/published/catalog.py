@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
-from fastpin.assess.outputs import Curve, write_csv
+from fastpin.assess.outputs import write_csv
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, whole_number
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
@@ -44,7 +42,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     for benchmark in (
         klang.BENCHMARK,
         handbook_formulas.BENCHMARK,
-        *loaded_pins.BENCHMARKS,
+        loaded_pins.BENCHMARK,
         *textbooks.BENCHMARKS,
     )
 }
@@ -108,7 +106,28 @@ def check(names: Iterable[str | int], directory: str | Path, nodes: int, formats
         least = FIGURES[name].least_nodes
         if whole_number("nodes", nodes, LEAST_NODES, MAX_NODES) < least:
             raise InputError("nodes", f"figure {name} needs at least {least} nodes, not {nodes}")
-    _check_files(map(stem, chosen), directory, formats)
+    for kind in formats:
+        choice("format", kind, FORMATS)
+    check_files([f"{stem(name)}.{kind}" for name in chosen for kind in (*formats, "csv")], directory)
+
+
+def check_files(names: Iterable[str], directory: str | Path) -> None:
+    """Check that files can be written in `directory`, and make it if it is missing.
+
+    Raises
+    ------
+    InputError
+        If a file can't be written.
+    """
+    folder = Path(directory)
+    if folder.exists() and not folder.is_dir():
+        raise InputError("output", f"{folder} is a file, not a directory")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError("output", f"can't make the directory {folder}: {error.strerror}") from None
+    for name in names:
+        check_writable(folder / name)
 
 
 def make(
@@ -129,9 +148,13 @@ def make(
     """
     check([name], directory, nodes, formats)
     chosen = figure(name)
+    curves = chosen.compute(nodes, progress)
+    *pictures, numbers = files = [Path(directory) / f"{stem(name)}.{kind}" for kind in (*formats, "csv")]
     units = "N (pressure) and T (shear on the pin) in F/R; angles from the bottom and T counter-clockwise positive"
-    remarks = (chosen.title, f"fastpin {__version__}, --nodes {nodes}", units)
-    return _write_files(chosen.compute(nodes, progress), chosen.draw, stem(name), directory, remarks, formats)
+    write_csv(curves, numbers, (chosen.title, f"fastpin {__version__}, --nodes {nodes}", units))
+    for picture in pictures:
+        save_drawing(chosen.draw, curves, picture, dpi=300.0)
+    return files
 
 
 def benchmark_name(name: str) -> str:
@@ -148,82 +171,8 @@ def benchmark_name(name: str) -> str:
     return text
 
 
-def check_benchmarks(names: Iterable[str], directory: str | Path, formats: Sequence[str] = FORMATS[:1]) -> None:
-    """Check before the work that the files of all benchmarks can be written, and make `directory` if it is missing.
-
-    Raises
-    ------
-    InputError
-        If there is no such benchmark, a format is unknown, or the files can't be written.
-    """
-    known = [benchmark_name(name) for name in names]
-    _check_files([*known, *map(_curves_stem, known)], directory, formats)
-
-
-def write_benchmark(
-    name: str, outcome: Outcome, directory: str | Path, formats: Sequence[str] = FORMATS[:1]
-) -> list[Path]:
-    """Write the numbers of a benchmark as CSV, and its figure, if it has one, in each of the `formats`.
-
-    The rows stand in ``NAME.csv``, and the curves of a figure in ``NAME-curves.csv``. Return the paths.
-    """
-    chosen = BENCHMARKS[benchmark_name(name)]
-    remarks = (chosen.title, f"fastpin {__version__}")
-    rows = Path(directory) / f"{chosen.name}.csv"
-    write_csv(row_curves(outcome.rows), rows, remarks)
-    if chosen.draw is None:
-        return [rows]
-    return [rows, *_write_files(outcome.curves, chosen.draw, _curves_stem(chosen.name), directory, remarks, formats)]
-
-
-def _curves_stem(name: str) -> str:
-    """Return the first part of the names of a benchmark's figure and its numbers."""
-    return f"{name}-curves"
-
-
-def _check_files(stems: Iterable[str], directory: str | Path, formats: Sequence[str]) -> None:
-    """Check that the files of figures can be written, and make `directory` if it is missing.
-
-    `stems` are the first parts of the names of the files.
-
-    Raises
-    ------
-    InputError
-        If a format is unknown, or the files can't be written.
-    """
-    for kind in formats:
-        choice("format", kind, FORMATS)
-    folder = Path(directory)
-    if folder.exists() and not folder.is_dir():
-        raise InputError("output", f"{folder} is a file, not a directory")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError("output", f"can't make the directory {folder}: {error.strerror}") from None
-    for stem in stems:
-        for file in _files(stem, folder, formats):
-            check_writable(file)
-
-
-def _write_files(
-    curves: Sequence[Curve],
-    draw: Callable[[Sequence[Curve]], Figure],
-    stem: str,
-    directory: str | Path,
-    remarks: Sequence[str],
-    formats: Sequence[str],
-) -> list[Path]:
-    """Write the curves of a figure as CSV with `remarks`, and the figure in each of the `formats`.
-
-    `stem` is the first part of the names of the files. Return the paths of the pictures, then the path of the numbers.
-    """
-    *pictures, numbers = files = _files(stem, directory, formats)
-    write_csv(curves, numbers, remarks)
-    for picture in pictures:
-        save_drawing(draw, curves, picture, dpi=300.0)
-    return files
-
-
-def _files(stem: str, directory: str | Path, formats: Sequence[str]) -> list[Path]:
-    """Return the pictures of a figure, then the file of its numbers."""
-    return [Path(directory) / f"{stem}.{kind}" for kind in (*formats, "csv")]
+def write_benchmark(name: str, outcome: Outcome, directory: str | Path) -> Path:
+    """Write the rows of a benchmark to ``NAME.csv``, and return its path."""
+    path = Path(directory) / f"{name}.csv"
+    write_csv(row_curves(outcome.rows), path, (BENCHMARKS[name].title, f"fastpin {__version__}"))
+    return path

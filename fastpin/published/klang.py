@@ -7,20 +7,17 @@ hole. 1 bar is N R/P = 1/312.5. The printed bars are multiples of 0.3125 bar, so
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from fastpin.assess.outputs import Curve
 from fastpin.bodies import Plate, Ring
 from fastpin.bodies.body import PinLoad, PlateBody
-from fastpin.figures.style import Line
 from fastpin.model import Material, MaterialPair, Problem
 from fastpin.model.angles import BOTTOM
 from fastpin.model.options import Method
-from fastpin.published.records import Benchmark, Outcome, Report, Row, add_legend, head, marked, panels, steps
+from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification.rows import NODES, half_width
@@ -92,16 +89,7 @@ def compute(progress: Report | None = None) -> Outcome:
     ]  # fmt: skip
     for words, state in states.items():
         rows += _key_rows(words, state)
-    curves = [Curve({"source": "Klang"}, {"angle_deg": angles, "pressure_bar": np.array(PUBLISHED, dtype=float)})]
-    for words, state in states.items():
-        inside = np.flatnonzero(state.pressure > 0.0)
-        columns = {
-            "angle_deg": np.degrees(state.theta[inside] - BOTTOM),
-            "pressure_bar": state.pressure[inside] / BAR,
-            "shear_over_limit": state.shear[inside] / (state.problem.friction * state.pressure[inside]),
-        }
-        curves.append(Curve({"source": words}, columns))
-    return Outcome(rows, curves)
+    return Outcome(rows)
 
 
 def _key_rows(words: str, state: State) -> Iterator[Row]:
@@ -111,37 +99,6 @@ def _key_rows(words: str, state: State) -> Iterator[Row]:
     yield Row(f"half-angle of contact, {words}", "deg", "60", contact)
     yield Row(f"half-angle of stick, {words}", "deg", f"{STICK:g}", stick_half_angle(state), OPEN)
     yield Row(f"largest pressure, {words}", "bar", PUBLISHED[0], state.peak_pressure / BAR, OPEN, LAST_DIGIT)
-
-
-def draw(curves: Sequence[Curve]) -> Figure:
-    """Draw the differences of the pressure from Klang's, and the shear in parts of the limit of friction."""
-    figure, ((left, right),) = panels(1, 2, height=3.2)
-    head(figure, "Like bodies, plane stress, friction coefficient 0.4; half-angle of contact 60 degrees")
-    published, *ours = curves
-    angles = published["angle_deg"]
-    printed = np.where(angles == MISPRINT, CORRECTED, published["pressure_bar"])
-    for colour, curve in enumerate(ours):
-        shown = curve["angle_deg"] >= 0.0
-        differences = np.interp(angles, curve["angle_deg"], curve["pressure_bar"]) - printed
-        left.plot(angles, differences, **_line(colour, (colour % 3, 3)))
-        right.plot(
-            curve["angle_deg"][shown], np.abs(curve["shear_over_limit"][shown]), **_line(colour, (2 * colour, 14))
-        )
-    left.axhspan(-LAST_DIGIT, LAST_DIGIT, color="0.85", zorder=0)
-    right.axvline(STICK, color="0.2", linewidth=0.9)
-    right.annotate("Klang's border", (STICK, 0.02), (-4, 0), textcoords="offset points", ha="right", fontsize=7.5)
-    left.set_ylabel("pressure minus Klang's (bar)")
-    right.set_ylabel("shear over limit")
-    for panel in (left, right):
-        panel.set_xlabel("angle from the bottom (deg)")
-        panel.set_xlim(0.0, 60.0)
-    add_legend(figure, *([(str(curve.parameters["source"]), _line(k, 1))] for k, curve in enumerate(ours)))
-    return figure
-
-
-def _line(colour: int, mark: int | tuple[int, int]) -> Line:
-    """Return the line of a variant, with marks at the places `mark` of Matplotlib's ``markevery``."""
-    return marked(colour, colour, 1.1) | {"markevery": mark}
 
 
 BENCHMARK = Benchmark(
@@ -155,5 +112,4 @@ BENCHMARK = Benchmark(
         "mesh and load of the test: ssnv127a.datg and ssnv127a.comm (github.com/ralic/Code_Aster)",
     ],
     compute,
-    draw,
 )

@@ -6,7 +6,7 @@ A row has a published number as printed, fastpin's number, and what follows.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
 from typing import Any, TypeVar
@@ -19,16 +19,9 @@ from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
 from fastpin.assess.outputs import Curve, aligned
+from fastpin.figures import style
 from fastpin.figures.sheet import Look
-from fastpin.figures.style import (
-    Line,
-    draw_grid,
-    fitted_legend,
-    house_style,
-    line,
-    new_figure,
-    save_figure,
-)
+from fastpin.figures.style import Line, line
 
 AGREES = "agrees to the digits printed"
 """The verdict on a number that differs by at most one unit of the last digit printed."""
@@ -117,10 +110,9 @@ class Row:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The rows of a benchmark, and the curves of its figure, which may be none."""
+    """The rows of a benchmark."""
 
     rows: Sequence[Row]
-    curves: Sequence[Curve] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True)
@@ -135,8 +127,6 @@ class Benchmark:
     sources : sequence of str
     compute : callable
         ``compute(progress)`` solves, and returns the outcome.
-    draw : callable, optional
-        ``draw(curves)`` draws the curves of the outcome.
     """
 
     name: str
@@ -144,7 +134,6 @@ class Benchmark:
     statement: str
     sources: Sequence[str]
     compute: Callable[[Report | None], Outcome]
-    draw: Callable[[Sequence[Curve]], Figure] | None = None
 
 
 def steps(items: Sequence[Item], progress: Report | None) -> Iterator[Item]:
@@ -188,26 +177,26 @@ def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, d
         drawn where possible.
     """
     look = Look(path, dpi=dpi)
-    with house_style():
-        save_figure(draw(curves), Path(path), look.dpi)
+    with style.house_style():
+        style.save_figure(draw(curves), Path(path), look.dpi)
 
 
 def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:
     """Return a new figure, `width` inches wide, and its panels, shape (rows, columns), each `height` inches high."""
-    figure = new_figure(width, rows * height + 0.6)
+    figure = style.new_figure(width, rows * height + 0.6)
     axes = figure.subplots(rows, columns, squeeze=False)
     for panel in axes.flat:
-        draw_grid(panel)
+        style.draw_grid(panel)
     return figure, axes
 
 
 def add_legend(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
     """Add a legend below the panels. Each of `rows` is a row of the legend: labels and their lines."""
     columns = max(len(row) for row in rows)
-    entries = [[Line2D([], [], label=label, **style) for label, style in row] for row in rows]
+    entries = [[Line2D([], [], label=label, **look) for label, look in row] for row in rows]
     blank = Line2D([], [], linestyle="none", label=" ")
     filled: list[Artist] = [row[k] if k < len(row) else blank for k in range(columns) for row in entries]
-    fitted_legend(figure, filled, columns)
+    style.fitted_legend(figure, filled, columns)
 
 
 def head(figure: Figure, *sentences: str) -> None:
@@ -232,7 +221,7 @@ def grey(dashes: int, width: float = 1.4) -> Line:
 
 def legend_below(panel: Axes, entries: Sequence[tuple[str, Line]], columns: int = 1, title: str = "") -> Legend:
     """Add a legend below a panel and its labels, and return it."""
-    shown = [Line2D([], [], label=label, **{**style, "markevery": None}) for label, style in entries]
+    shown = [Line2D([], [], label=label, **{**look, "markevery": None}) for label, look in entries]
     spaces: Any = {"handlelength": 2.6, "labelspacing": 0.3, "columnspacing": 1.2}
     place: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "fontsize": 7.5, "title_fontsize": 7.5}
     return panel.legend(handles=shown, ncols=columns, title=title or None, **place, **spaces)

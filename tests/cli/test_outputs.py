@@ -35,7 +35,7 @@ COMMANDS = {
     "identify": ["identify", "case.toml", "rig.csv", "--over", "ux"],
     "compliance": ["compliance", "lug.toml"],
     "joint": ["joint", "joint.toml"],
-    "benchmarks": ["benchmarks", "kirsch"],
+    "benchmarks": ["benchmarks", "brazilian-disk"],
     "charts": ["charts", "kt_bearing"],
     "verify": ["verify"],
     "wear": ["wear", "case.toml", "--cycles", "2", "--coefficient", "1e-13"],
@@ -186,7 +186,7 @@ def test_a_result_replaces_results_only(command, kind, words, folder, samples):
     assert contents(folder) == before
 
 
-@pytest.mark.parametrize(("command", "name"), [("paper", "figure03.png"), ("benchmarks", "kirsch.csv")])
+@pytest.mark.parametrize(("command", "name"), [("paper", "figure03.png"), ("benchmarks", "brazilian-disk.csv")])
 def test_files_in_a_directory_follow_the_rule(command, name, folder, samples):
     Path("out").mkdir()
     shutil.copyfile(samples / "r.h5", Path("out") / name)

@@ -99,7 +99,7 @@ def test_checks(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     "words",
     [
-        *gate("benchmarks nafems-loaded-pin"),
+        *gate("benchmarks nasa-tp-1862"),
         "charts",
         "charts kt_bearing",
         "charts contact_angle --load-parameter 1 --friction 0.3",
