@@ -456,7 +456,6 @@ def add_charts(commands: Any) -> None:
     _option(charts, "--rotation", "HOW", "free or fixed (default free; cycles only)")
     _switch(charts, "--formulas", "print formulas for a spreadsheet, with their errors")
     _option(charts, "--csv", "FILE", "write the nodes of the chart", Path)
-    _option(charts, "--book", "FILE", "draw the book of charts (pdf)", Path)
     _add_json(charts, "write the charts, or a value with its error, as JSON")
 
 

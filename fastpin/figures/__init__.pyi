@@ -9,7 +9,6 @@ from . import stress as stress
 from . import style as style
 from . import sweep as sweep
 from . import tractions as tractions
-from .charts import write_chart_book as write_chart_book
 from .convergence import plot_convergence as plot_convergence
 from .cycles import plot_cycles as plot_cycles
 from .fatigue import plot_crack_growth as plot_crack_growth

@@ -50,18 +50,6 @@ def test_the_nodes_of_a_chart_as_csv() -> None:
     assert float(row["error"]) == pytest.approx(found.error, rel=1e-6)
 
 
-@pytest.mark.survey
-def test_the_book_is_a_pdf_with_a_page_for_each_chart() -> None:
-    pypdf = pytest.importorskip("pypdf")
-    said("charts", "--book", "book.pdf")
-    first = Path("book.pdf").read_bytes()
-    pages = pypdf.PdfReader("book.pdf").pages
-    assert len(pages) == 1 + len(CHARTS)
-    assert "largest bound" in pages[0].extract_text()
-    said("charts", "--book", "book.pdf")
-    assert Path("book.pdf").read_bytes() == first
-
-
 def test_formulas_are_printed_with_their_errors() -> None:
     lines = printed("charts", "--formulas").splitlines()
     assert all(formula.cell in lines for formula in chart_formulas())
@@ -85,7 +73,6 @@ def test_formulas_are_printed_with_their_errors() -> None:
         ),
         (AT, "--load-parameter: has a meaning with the name of a chart only"),
         (["--csv", "a.csv"], "--csv: has a meaning with the name of a chart only"),
-        (["--book", "book.png"], '--book: must be the name of a PDF, which ends in .pdf, not "book.png"'),
     ],
 )
 def test_wrong_input_is_one_sentence(arguments: list[str], message: str, tmp_path: Path) -> None:

@@ -59,7 +59,7 @@ TEXTS: dict[str, dict[str, str]] = {
     "compliance": {"--output": ".json", "--plot": ".png"},
     "joint": {"--json": ".json", "--plot": ".png", "--shares": ".svg"},
     "benchmarks": {"--json": ".json"},
-    "charts": {"--json": ".json", "--csv": ".csv", "--book": ".pdf"},
+    "charts": {"--json": ".json", "--csv": ".csv"},
     "verify": {"--json": ".json"},
     "wear": {"--json": ".json", "--record": ".html"},
 }

@@ -48,7 +48,6 @@ COMMANDS = {
     "converge long.toml --nodes 201,401,801": ("", ".*"),
     "report long.toml -o a.html": ("", ".*"),
     "paper -o .": ("", ".*"),
-    "charts --book a.pdf": ("", ""),
 }
 """Commands of a minute or more: the first file of each, and what it says after "interrupted"."""
 

@@ -1,8 +1,12 @@
-"""The book of charts: a PDF with a page for each chart, and a first page of words."""
+"""The book of charts: a PDF with a page for each chart, and a first page of words.
+
+``python -m docs.beyond.chart_book charts.pdf`` writes it from a copy of the source.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import sys
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +20,7 @@ from fastpin.charts.groups import WIDTHS, load_parameter_at
 from fastpin.charts.lookups import CHARTS, ChartQuantity, lookup
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import house_style, line, new_figure
-from fastpin.model.checks import check_callable, file_path
+from fastpin.model.checks import file_path
 from fastpin.report.charts import chart_list
 from fastpin.storage.files import replacing
 
@@ -38,27 +42,18 @@ POINTS = 161
 LOADS = {"body": "body load", "centre": "load at the centre"}
 
 
-def write_chart_book(path: str | Path, progress: Callable[[float, float], None] | None = None) -> None:
+def write_chart_book(path: str | Path) -> None:
     """Write the book of charts as a PDF, whole or not at all. Equal data gives equal files.
-
-    Parameters
-    ----------
-    path : path
-    progress : callable, optional
-        Called as ``progress(done, all)`` with numbers of pages.
 
     Raises
     ------
     InputError
-        If an argument can't be used, or the file can't be written.
+        If the file can't be written.
     """
-    check_callable("progress", progress)
     whole = replacing(file_path("path", path))
     with house_style(), whole as temporary, PdfPages(temporary, metadata={"CreationDate": None}) as pages:
-        for done, figure in enumerate(_pages(), start=1):
+        for figure in _pages():
             pages.savefig(figure)
-            if progress is not None:
-                progress(done, len(CHARTS) + 1)
 
 
 def _pages() -> Iterator[Figure]:
@@ -142,3 +137,7 @@ def _finish(sheet: Sheet, chart: ChartQuantity, legend: Sequence[Line2D], captio
     sheet.grid()
     sheet.head(chart.words, caption=f"{caption}; bands: error bounds")
     sheet.legend(legend, len(legend) // 2)
+
+
+if __name__ == "__main__":
+    write_chart_book(sys.argv[1])
