@@ -33,7 +33,7 @@ def measure(nodes: int, loads: int) -> dict[str, float]:
         turn = 0.05 * k
         given = {"P": FORCE * math.cos(0.9 * math.sin(0.3 * turn)), "Q": 0.5 * FORCE * math.sin(turn)}
         began = time.process_time()
-        answer = contact.obey(Message("load", k, {"loads": given, "gesture": k // PER_GESTURE, "drag": True}))
+        answer = contact.obey(Message("load", k, {"loads": given, "gesture": k // PER_GESTURE}))
         size = len(json.dumps(answer, separators=(",", ":")))
         times.append(time.process_time() - began)
         if k == loads // 10:

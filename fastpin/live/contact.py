@@ -9,7 +9,7 @@ import gc
 import math
 import threading
 from collections import deque
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
@@ -120,28 +120,13 @@ class LiveContact:
 
     def obey(self, message: Message) -> list[Answer]:
         """Carry out a message, and return the answers. Errors become answers; the contact is then where it was."""
-        work = self.steps(message)
-        try:
-            while True:
-                next(work)
-        except StopIteration as done:
-            return list(done.value)
-
-    def steps(self, message: Message) -> Generator[None, None, list[Answer]]:
-        """Carry out a message as :meth:`obey` does, with a pause after each step of a long history.
-
-        Until the generator has ended, nothing else may be asked of the contact. If it is closed before its end, the
-        contact is where it was.
-        """
         before = self._mark()
         self._stop.clear()
         try:
             if message.kind == "hello":
                 self._known, self._shown = {}, []
             else:
-                work = getattr(self, f"_obey_{message.kind}")(**message.fields)
-                if work is not None:
-                    yield from work
+                getattr(self, f"_obey_{message.kind}")(**message.fields)
         except InputError as error:
             self._return_to(before)
             return [refusal(message.id, error)]
@@ -166,24 +151,24 @@ class LiveContact:
 
     # -- messages --------------------------------------------------------------------------------------------------
 
-    def _obey_load(self, loads: dict[str, float], gesture: int, drag: bool) -> None:
+    def _obey_load(self, loads: dict[str, float], gesture: int) -> None:
         is_new = gesture != self._gesture
         mark = self._lasting_mark() if is_new else None
         self._step(self.session, loads, gesture)
         if mark is not None:
             self._remember(mark, gesture)
 
-    def _obey_change(self, changes: dict[str, Any], follow: str, gesture: int) -> Iterator[None]:
+    def _obey_change(self, changes: dict[str, Any], follow: str, gesture: int) -> None:
         fields = changed_fields(self.session.problem, changes, self._scales)
         session = self.session.copy()
         session.change(replay="none", **fields)
         if session.grid is not None and follow == "load" and session.grid.size != self._nodes:
             session = self._new_session(session.problem)  # the nodes may have been too many for the new problem
-        return self._lead(session, follow, gesture)
+        self._lead(session, follow, gesture)
 
-    def _obey_nodes(self, nodes: int, follow: str, gesture: int) -> Iterator[None]:
+    def _obey_nodes(self, nodes: int, follow: str, gesture: int) -> None:
         mark, self._nodes = self._lasting_mark(), nodes
-        return self._lead(self._new_session(self.session.problem), follow, gesture, mark)
+        self._lead(self._new_session(self.session.problem), follow, gesture, mark)
 
     def _obey_undo(self) -> None:
         if not self._past:
@@ -223,11 +208,8 @@ class LiveContact:
         present = history.values()[-1]
         return [_named(np.where(np.all(np.isnan(given), axis=0), np.nan, present))]
 
-    def _lead(self, session: Session, follow: str, gesture: int, mark: Mark | None = None) -> Iterator[None]:
-        """Lead a new session from no load, and make it the present one. `mark` is the place before.
-
-        There is a pause after each load.
-        """
+    def _lead(self, session: Session, follow: str, gesture: int, mark: Mark | None = None) -> None:
+        """Lead a new session from no load, and make it the present one. `mark` is the place before."""
         mark, rows = mark or self._lasting_mark(), self._rows(follow)
         self.session, self._trail = session, []
         allowed = {control["name"] for control in load_controls(session.problem, self._scales)}
@@ -240,7 +222,6 @@ class LiveContact:
                 self._begin(loads, gesture)
             else:
                 self._step(self.session, loads, gesture)
-                yield
         if left_out:
             self.sentence = f"The changed problem takes no {' and no '.join(left_out)}: left out"
         self._remember(mark, gesture)

@@ -8,7 +8,6 @@ kind       fields
 =========  ==========================================================================================================
 hello      ``session``: the name of the session that the page had before, or "". The first message.
 load       ``loads``: loads by name, SI. ``gesture``: a whole number; loads of one gesture are undone together.
-           ``drag``: true while the mouse moves. Of several loads of a drag that wait, the latest one is followed.
 change     ``changes``: new values by the names of controls. ``follow``: "load" or "history". ``gesture`` as above.
 nodes      ``nodes``: the number of nodes. ``follow`` as above.
 undo       Back to the state before the last gesture.
@@ -29,7 +28,6 @@ pictures   The history of the page changes: ``drop`` pictures at its beginning g
 refused    Input that can't be used. ``field`` and ``sentence`` say why. Nothing has changed.
 lost       A load that nothing carries, or that the solver has lost. ``sentence`` says why, ``load`` where, ``fraction``
            which part of the step was carried. The contact is at the state before.
-skipped    A load of a drag that was passed over because a later one came.
 =========  ==========================================================================================================
 
 Values are per thickness in SI units, as in Python. A unit of the page is an object with ``name`` and ``factor``: a
@@ -54,11 +52,8 @@ from fastpin.model.grid import LEAST_NODES
 MOST_BYTES = 16_384
 """Most bytes of a message from the page. The largest has nine loads; it is shorter than 1,000."""
 
-MOST_A_SECOND = 240
-"""Most messages of a connection in a second. A page sends one for each picture, at most 120 a second."""
-
 MOST_WAITING = 64
-"""Most messages of a connection that wait. Loads of a drag count once."""
+"""Most messages of a connection that wait. A page sends one at a time."""
 
 MOST_PICTURES = 2_000
 """Pictures of a history that are remembered: a minute of dragging, up to 20 MB with 200 nodes."""
@@ -72,9 +67,6 @@ MOST_UNDONE_NODES = 20_000
 MOST_NODES = 1_600
 """Nodes round the hole. A step with so many takes half a second."""
 
-MOST_CONNECTIONS = 16
-"""Open connections. Each page has one."""
-
 MOST_SESSIONS = 8
 """Contacts, each with its history: some 20 MB with 200 nodes."""
 
@@ -86,11 +78,6 @@ class Message:
     kind: str
     id: int
     fields: dict[str, Any] = field(default_factory=dict)
-
-    @property
-    def is_drag(self) -> bool:
-        """Whether a later load may take the place of this one."""
-        return self.kind == "load" and bool(self.fields["drag"])
 
 
 def _table(name: str, value: object) -> dict[str, Any]:
@@ -112,7 +99,6 @@ FIELDS: dict[str, dict[str, Any]] = {
     "load": {
         "loads": lambda name, value: {load: number(load, one) for load, one in _table(name, value).items()},
         "gesture": _whole,
-        "drag": true_or_false,
     },
     "change": {"changes": _table, "follow": _follow, "gesture": _whole},
     "nodes": {

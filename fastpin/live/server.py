@@ -3,8 +3,8 @@
 The page and its websocket stand under a random token. Host and Origin are checked, so no other page of the browser can
 reach the server. docs/live.md lists the limits; their numbers stand in :mod:`fastpin.live.protocol`.
 
-Contacts are computed in one thread, one after the other. The loop of the server stays free meanwhile. Each contact has
-one piece of work in the queue of this thread at most, and a piece ends after :data:`TURN`. So pages take turns.
+Contacts are computed in one thread, one message after the other. The loop of the server stays free meanwhile: it hears
+when a page stops its work.
 """
 
 from __future__ import annotations
@@ -17,26 +17,20 @@ import json
 import logging
 import secrets
 import socket
-import time
-from collections import deque
-from collections.abc import AsyncIterator, Awaitable, Callable, Generator, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from fastpin.errors import FastpinError, InputError
-from fastpin.live import protocol
 from fastpin.live.contact import LiveContact
 from fastpin.live.page import live_page, page_files, recorded_page
-from fastpin.live.protocol import MOST_A_SECOND, MOST_BYTES, MOST_WAITING, Message, read_message, refusal
+from fastpin.live.protocol import MOST_BYTES, MOST_SESSIONS, MOST_WAITING, Message, read_message, refusal
 from fastpin.version import __version__
 
 ADDRESS = "127.0.0.1"
 """The address on which the server listens: that of this machine, for this machine."""
-
-TURN = 0.05
-"""Seconds after which a long history lets the work of other pages pass."""
 
 TOKEN_BYTES = 16
 """Random bytes of the token: 128 bits can't be guessed."""
@@ -69,127 +63,6 @@ requests_log.disabled = True
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
-class Mailbox:
-    """The messages of one connection that wait. Of several loads of a drag the latest one stays.
-
-    Attributes
-    ----------
-    session : str
-        The name of the contact that obeys them; "" before the first message.
-    """
-
-    def __init__(self) -> None:
-        self.session = ""
-        self._waiting: deque[Message] = deque()
-        self._arrived = asyncio.Event()
-
-    def put(self, message: Message) -> Message | None:
-        """Add a message. Return the one whose place it takes, if any.
-
-        Raises
-        ------
-        InputError
-            If too many messages wait.
-        """
-        last = self._waiting[-1] if self._waiting else None
-        if last is not None and message.is_drag and last.is_drag and _gesture(last) == _gesture(message):
-            self._waiting[-1] = message
-            return last
-        if len(self._waiting) >= MOST_WAITING:
-            raise InputError("message", f"more than {MOST_WAITING} messages wait; this one is dropped")
-        self._waiting.append(message)
-        self._arrived.set()
-        return None
-
-    async def get(self) -> Message:
-        """The next message."""
-        while not self._waiting:
-            self._arrived.clear()
-            await self._arrived.wait()
-        return self._waiting.popleft()
-
-
-def _gesture(message: Message) -> int:
-    return int(message.fields["gesture"])
-
-
-class RateLimit:
-    """Whether a message may come now: at most so many in a second, counted in a moving window."""
-
-    def __init__(self, most: int, clock: Callable[[], float] = time.monotonic) -> None:
-        self._times: deque[float] = deque(maxlen=most)
-        self._clock = clock
-
-    def allows(self) -> bool:
-        """Count a message, if it may come."""
-        now = self._clock()
-        if len(self._times) == self._times.maxlen and now - self._times[0] < 1.0:
-            return False
-        self._times.append(now)
-        return True
-
-
-class Sessions:
-    """The contacts of all pages by name. A page that comes back finds its contact again.
-
-    There are :data:`fastpin.live.protocol.MOST_SESSIONS` of them.
-    """
-
-    def __init__(self) -> None:
-        self._contacts: dict[str, LiveContact] = {}
-        self._turns: dict[str, asyncio.Lock] = {}
-        self._open: set[str] = set()
-
-    def find(self, name: str) -> str | None:
-        """Take the contact of this name, if it is there and no other page has it."""
-        if name not in self._contacts or name in self._open:
-            return None
-        self._contacts[name] = self._contacts.pop(name)  # the latest one is the last to be dropped
-        self._open.add(name)
-        return name
-
-    def make_room(self) -> None:
-        """Drop the oldest contact without a page, if there are as many contacts as may be.
-
-        Raises
-        ------
-        InputError
-            If all contacts have pages.
-        """
-        if len(self._contacts) >= protocol.MOST_SESSIONS:
-            idle = next((name for name in self._contacts if name not in self._open), None)
-            if idle is None:
-                words = f"{protocol.MOST_SESSIONS} pages are open, no more are served; close one, and reload"
-                raise InputError("session", words)
-            del self._contacts[idle], self._turns[idle]
-
-    def add(self, contact: LiveContact) -> str:
-        """Add the contact of a new page, and return its name."""
-        name = secrets.token_urlsafe(TOKEN_BYTES)
-        self._contacts[name], self._turns[name] = contact, asyncio.Lock()
-        self._open.add(name)
-        return name
-
-    def turn(self, name: str) -> asyncio.Lock:
-        """The lock of a contact: who holds it may ask the contact for something."""
-        return self._turns[name]
-
-    def release(self, name: str) -> None:
-        """Note that a page has gone. Its contact stays."""
-        self._open.discard(name)
-
-    def __getitem__(self, name: str) -> LiveContact:
-        return self._contacts[name]
-
-    def __contains__(self, name: str) -> bool:
-        return name in self._contacts
-
-    def stop(self) -> None:
-        """End all long histories."""
-        for contact in self._contacts.values():
-            contact.stop()
-
-
 class Server:
     """The server of the page.
 
@@ -197,8 +70,6 @@ class Server:
     ----------
     make : callable
         ``make()`` returns the contact of a new page.
-    clock : callable
-        ``clock()`` returns seconds. Rates of messages and turns of pages are measured with it.
 
     Attributes
     ----------
@@ -206,17 +77,19 @@ class Server:
         The part of the address that nobody else knows.
     address : str
         The address of the page; "" before :meth:`take_port`.
+    contacts : dict of LiveContact
+        The contacts of the latest pages by the names of their sessions. A page that comes back finds its contact again.
     """
 
-    def __init__(self, make: Callable[[], LiveContact], clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, make: Callable[[], LiveContact]) -> None:
         self.token = secrets.token_urlsafe(TOKEN_BYTES)
         self.address = ""
         self._hosts: tuple[str, ...] = ()
-        self._make, self._sessions, self._clock = make, Sessions(), clock
-        self._greeting = asyncio.Lock()
+        self._make = make
+        self.contacts: dict[str, LiveContact] = {}
+        self._open: dict[web.WebSocketResponse, str] = {}  # the names of the sessions of open pages
         self._files = page_files()
         self._page, self._map = live_page()
-        self._connections = 0
         self._sockets: dict[web.WebSocketResponse, web.Request] = {}
         self._thread = ThreadPoolExecutor(1, "fastpin")
 
@@ -242,7 +115,8 @@ class Server:
             await web.SockSite(runner, listening).start()
             yield self
         finally:
-            self._sessions.stop()
+            for contact in self.contacts.values():
+                contact.stop()
             await self._end_pages()
             await runner.cleanup()
             listening.close()
@@ -317,12 +191,11 @@ class Server:
         InputError
             If the history can't be saved.
         """
-        if name not in self._sessions or file not in ("case.toml", "recording.html"):
+        if name not in self.contacts or file not in ("case.toml", "recording.html"):
             return None
-        contact = self._sessions[name]
+        contact = self.contacts[name]
         work = contact.case_text if file == "case.toml" else lambda: recorded_page(contact.recording())
-        async with self._sessions.turn(name):
-            return str(await self._compute(work))
+        return str(await self._compute(work))
 
     async def _compute(self, work: Callable[[], Any]) -> Any:
         return await asyncio.get_running_loop().run_in_executor(self._thread, work)
@@ -353,54 +226,50 @@ class Server:
                 transport.abort()
 
     async def serve_page(self, page: web.WebSocketResponse) -> None:
-        """Serve a page until it has gone. If too many are open, tell it so, and close it."""
-        if self._connections >= protocol.MOST_CONNECTIONS:
-            # A page can read messages, but not why a websocket was refused.
-            sentence = f"{protocol.MOST_CONNECTIONS} pages are open, no more are served; close one, and reload"
-            await _send(page, refusal(None, InputError("connection", sentence)))
-            await page.close(code=WSCloseCode.TRY_AGAIN_LATER)
-            return
-        self._connections += 1
-        mailbox, limit = Mailbox(), RateLimit(MOST_A_SECOND, self._clock)
-        working = asyncio.create_task(self._work(page, mailbox))
+        """Serve a page until it has gone. What it has asked for last ends then."""
+        messages: asyncio.Queue[Message] = asyncio.Queue(MOST_WAITING)
+        working = asyncio.create_task(self._work(page, messages))
         try:
             async for received in page:
-                if not limit.allows():
-                    continue  # Messages of any kind that come faster get no answer: answers would be a flood too.
                 if received.type == WSMsgType.TEXT:
-                    await self._receive(page, mailbox, received.data)
+                    await self._receive(page, messages, received.data)
                 else:
                     await _send(page, refusal(None, InputError("message", "must be text")))
         finally:
-            self._connections -= 1
+            self._stop(page)
             working.cancel()
             with contextlib.suppress(asyncio.CancelledError, ConnectionError):
                 await working
 
-    async def _receive(self, page: web.WebSocketResponse, mailbox: Mailbox, text: str) -> None:
-        message = None
+    async def _receive(self, page: web.WebSocketResponse, messages: asyncio.Queue[Message], text: str) -> None:
         try:
             message = read_message(text)
-            if message.kind == "stop":
-                if mailbox.session:
-                    self._sessions[mailbox.session].stop()
-                return
-            skipped = mailbox.put(message)
-            if skipped is not None:
-                await _send(page, {"kind": "skipped", "id": skipped.id})
         except InputError as error:
-            await _send(page, refusal(None if message is None else message.id, error))
+            await _send(page, refusal(None, error))
+            return
+        if message.kind == "stop":
+            self._stop(page)
+        elif messages.full():
+            sentence = f"more than {MOST_WAITING} messages wait; this one is dropped"
+            await _send(page, refusal(message.id, InputError("message", sentence)))
+        else:
+            messages.put_nowait(message)
 
-    async def _work(self, page: web.WebSocketResponse, mailbox: Mailbox) -> None:
+    def _stop(self, page: web.WebSocketResponse) -> None:
+        """End a long history of a page."""
+        if page in self._open:
+            self.contacts[self._open[page]].stop()
+
+    async def _work(self, page: web.WebSocketResponse, messages: asyncio.Queue[Message]) -> None:
         """Obey the messages of a page, one after the other."""
         try:
             while True:
-                message = await mailbox.get()
+                message = await messages.get()
                 try:
-                    if not mailbox.session:
-                        await self._greet(page, mailbox, message)
-                    async with self._sessions.turn(mailbox.session):
-                        text = await self._obey(self._sessions[mailbox.session], message)
+                    if page not in self._open:
+                        await self._greet(page, message)
+                    contact = self.contacts[self._open[page]]
+                    text = await self._compute(functools.partial(_answers, contact, message))
                 except (ConnectionError, RuntimeError):
                     raise
                 except Exception as error:
@@ -410,49 +279,33 @@ class Server:
         except (ConnectionError, RuntimeError):  # the page has gone
             log.debug("a page has gone")
         finally:
-            self._sessions.release(mailbox.session)
+            self._open.pop(page, None)
 
-    async def _obey(self, contact: LiveContact, message: Message) -> list[str]:
-        """Carry out a message in turn with the work of other pages, and return the answers as text."""
-        work = contact.steps(message)
-        try:
-            while True:
-                text = await self._compute(functools.partial(_answers, work, message, self._clock))
-                if text is not None:
-                    return list(text)
-        finally:  # a page that has gone leaves its work: the contact goes back to where it was
-            with contextlib.suppress(RuntimeError):  # the server ends
-                self._thread.submit(work.close)
-
-    async def _greet(self, page: web.WebSocketResponse, mailbox: Mailbox, message: Message) -> None:
+    async def _greet(self, page: web.WebSocketResponse, message: Message) -> None:
         """Find the contact of a page, or make one."""
         if message.kind != "hello":
             raise InputError("kind", "the first message must be hello")
-        async with self._greeting:  # one after the other, so that there are never too many contacts
-            name = self._sessions.find(message.fields["session"])
-            if name is None:
-                self._sessions.make_room()
-                name = self._sessions.add(await self._compute(self._make))
-            mailbox.session = name
+        name = message.fields["session"]
+        if name not in self.contacts or name in self._open.values():
+            contact, name = await self._compute(self._make), secrets.token_urlsafe(TOKEN_BYTES)
+            if len(self.contacts) >= MOST_SESSIONS:
+                idle = next((each for each in self.contacts if each not in self._open.values()), None)
+                if idle is None:
+                    sentence = f"{MOST_SESSIONS} pages are open, no more are served; close one, and reload"
+                    raise InputError("session", sentence)
+                del self.contacts[idle]
+            self.contacts[name] = contact
+        self.contacts[name] = self.contacts.pop(name)  # the latest one is the last to be dropped
+        self._open[page] = name
         await _send(page, {"kind": "welcome", "id": message.id, "session": name, "version": __version__})
 
 
-def _answers(
-    work: Generator[None, None, list[dict[str, Any]]], message: Message, clock: Callable[[], float]
-) -> list[str] | None:
-    """Go on with a message for a while. Return its answers as text at its end, and None before.
-
-    Whatever goes wrong is an answer too, and the page lives on.
-    """
-    end = clock() + TURN
+def _answers(contact: LiveContact, message: Message) -> list[str]:
+    """Carry out a message, and return the answers as text. Whatever goes wrong is an answer too: the page lives on."""
     try:
-        while clock() < end:
-            next(work)
-    except StopIteration as done:
-        return [json.dumps(answer, allow_nan=False, separators=(",", ":")) for answer in done.value]
+        return [json.dumps(answer, allow_nan=False, separators=(",", ":")) for answer in contact.obey(message)]
     except Exception as error:
         return [_failure(message, error)]
-    return None
 
 
 def _failure(message: Message, error: Exception) -> str:
@@ -491,7 +344,7 @@ def bound_socket(port: int) -> socket.socket:
     found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         found.bind((ADDRESS, port))
-        found.listen(protocol.MOST_CONNECTIONS)
+        found.listen()
     except OSError as error:
         found.close()
         reason = (error.strerror or str(error)).lower()

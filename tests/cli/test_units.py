@@ -159,7 +159,7 @@ def check_summary(*texts: str) -> None:
 @pytest.mark.parametrize("thick", [True, False])
 def test_the_live_page_names_units_with_their_factors(thick: bool) -> None:
     contact = LiveContact(casefile.parse_case(words(thick)[0]), 31)
-    contact.obey(Message("load", 1, {"loads": {"Q": 1e5}, "gesture": 1, "drag": False}))
+    contact.obey(Message("load", 1, {"loads": {"Q": 1e5}, "gesture": 1}))
     found = json_ready(contact.recording())
     wrong = PER_METRE if thick else IN_ALL
     assert not [text for _, text in leaves(found) if isinstance(text, str) and len(text) < 100 and wrong.search(text)]

@@ -180,7 +180,7 @@ class Tab:
     @property
     def live(self) -> LiveContact:
         """The contact of the page, in the server."""
-        return self.server._sessions[self.run("return fastpin.link.session")]
+        return self.server.contacts[self.run("return fastpin.link.session")]
 
     def curve(self, name: str) -> np.ndarray:
         """The data of a chart, shape (series, points); a gap is NaN."""
@@ -328,7 +328,7 @@ NARROW = FREE.replace("clearance = 1e-5", "clearance = 1e-4").replace("P = 1e6",
 def test_charts_show_a_narrow_contact_larger_until_the_whole_hole_is_wanted(opened, load):
     tab = opened(NARROW, 100)
     tab.run("return fastpin.link.ask('reset')")
-    tab.run("return fastpin.link.ask('load', {loads: arguments[0], gesture: 1, drag: false})", load)
+    tab.run("return fastpin.link.ask('load', {loads: arguments[0], gesture: 1})", load)
     state = tab.live.session.state
     ((start, stop),) = [np.degrees(ends) + 90.0 for ends in state.contact]
     for low, high in zoomed(tab):

@@ -43,7 +43,7 @@ def drag(page: Page, gesture: int, count: int = 12, turn: float = 1.0) -> None:
     """Move the load along an arc."""
     for k in range(count):
         angle = turn * (k + 1) / count
-        page.tell("load", loads={"P": P * math.cos(angle), "Q": P * math.sin(angle)}, gesture=gesture, drag=True)
+        page.tell("load", loads={"P": P * math.cos(angle), "Q": P * math.sin(angle)}, gesture=gesture)
 
 
 def assert_shown(picture: dict, state: State) -> None:

@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 
 from fastpin.errors import InputError
 from fastpin.live.protocol import FIELDS, Message, read_message
-from fastpin.live.server import RateLimit
 from tests.support.refusals import refused
 
-LOAD = {"kind": "load", "id": 7, "loads": {"P": 1}, "gesture": 3, "drag": True}
+LOAD = {"kind": "load", "id": 7, "loads": {"P": 1}, "gesture": 3}
 LEAF = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
 JSON = (
     LEAF
@@ -25,9 +24,7 @@ JSON = (
 
 def test_a_message_is_read() -> None:
     message = read_message(json.dumps(LOAD))
-    assert message == Message("load", 7, {"loads": {"P": 1.0}, "gesture": 3, "drag": True})
-    assert message.is_drag
-    assert not read_message('{"kind": "undo", "id": 0}').is_drag
+    assert message == Message("load", 7, {"loads": {"P": 1.0}, "gesture": 3})
 
 
 @pytest.mark.parametrize(
@@ -44,7 +41,7 @@ def test_a_message_is_read() -> None:
         (json.dumps(LOAD | {"loads": {}}), "loads: must be an object with at least one entry"),
         (json.dumps(LOAD | {"loads": {"P": "1"}}), "P: must be a number"),
         (json.dumps(LOAD | {"loads": {"P": float("nan")}}), "P: must be a finite number"),
-        (json.dumps(LOAD | {"drag": 1}), "drag: must be true or false"),
+        (json.dumps({"kind": "keep", "id": 1, "on": 1}), "on: must be true or false"),
         (json.dumps({"kind": "nodes", "id": 1, "nodes": 10**6, "follow": "load", "gesture": 1}), "nodes: must be"),
         (json.dumps({"kind": "change", "id": 1, "changes": {"a": 1}, "follow": "x", "gesture": 1}), "follow: must be"),
     ],
@@ -60,13 +57,3 @@ def test_any_json_is_a_message_or_one_refusal(value: object, kind: str | None) -
         value = {"kind": kind, "id": 1, **value}
     with contextlib.suppress(InputError):  # no other error
         assert read_message(json.dumps(value)).kind in FIELDS
-
-
-def test_the_rate_is_counted_in_a_moving_second() -> None:
-    now = 0.0
-    limit = RateLimit(3, lambda: now)
-    assert [limit.allows() for _ in range(5)] == [True, True, True, False, False]
-    now = 0.999
-    assert not limit.allows()
-    now = 1.0
-    assert [limit.allows() for _ in range(4)] == [True, True, True, False]

@@ -44,7 +44,7 @@ def message(kind: str, number: int = 1, **fields: Any) -> Message:
     """Return a message, checked as those of a page are."""
     usual: dict[str, Any] = {
         "hello": {"session": ""},
-        "load": {"gesture": 1, "drag": False},
+        "load": {"gesture": 1},
         "change": {"gesture": 2, "follow": "load"},
         "nodes": {"gesture": 3, "follow": "load"},
         "keep": {"on": True},
@@ -118,9 +118,9 @@ class Talk:
     async def tell(self, kind: str, **fields: Any) -> dict[str, Any]:
         return await self.answer(await self.send(kind, **fields))
 
-    async def load(self, shear: float, drag: bool = False) -> dict[str, Any]:
+    async def load(self, shear: float) -> dict[str, Any]:
         """Lead the load `Q`, in gesture 1."""
-        return await self.tell("load", loads={"Q": shear}, gesture=1, drag=drag)
+        return await self.tell("load", loads={"Q": shear}, gesture=1)
 
     async def hello(self, session: str = "") -> tuple[str, dict[str, Any]]:
         """Return the name of the session, and the pictures."""

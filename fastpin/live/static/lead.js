@@ -17,7 +17,7 @@ export class Leader {
 
   // Follow a load. While one is on its way, the latest of the others waits.
   drag(loads, gesture) {
-    this.send("load", { loads, gesture, drag: true });
+    this.send("load", { loads, gesture });
   }
 
   // Change the problem, in the same way.
@@ -44,6 +44,6 @@ export class Leader {
 
   // Follow one load, and give its answer.
   step(loads, gesture) {
-    return this.link.ask("load", { loads, gesture, drag: false });
+    return this.link.ask("load", { loads, gesture });
   }
 }

@@ -1,7 +1,7 @@
 // The connection to the server: messages with numbers, their answers, and a new connection when one is lost.
 
 const WAITS = [300, 700, 1500, 3000]; // ms before the next try
-const ENDED = 1001, TOO_MANY = 1013; // codes with which the server closes a connection
+const ENDED = 1001; // the code with which a server that ends closes a connection
 const LONG = 400; // ms without an answer from which on the page says that the server computes
 
 export class Link {
@@ -46,7 +46,6 @@ export class Link {
     this.open = false;
     for (const answer of this.waiting.values()) answer({ kind: "gone" });
     this.waiting.clear();
-    if (code === TOO_MANY) return;
     if (code === ENDED) this.tries = WAITS.length;
     this.onStatus(this.tries < WAITS.length ? "again" : "lost");
     setTimeout(() => this.connect(), WAITS[Math.min(this.tries, WAITS.length - 1)]);
