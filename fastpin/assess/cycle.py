@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +16,6 @@ from fastpin.states.cycles import CYCLE_KINDS, Cycle
 from fastpin.states.load_cycle import NODE_KINDS, LoadCycle, NodeBehaviour
 from fastpin.states.quantities import load_point, sizes
 from fastpin.states.regimes import REGIMES
-from fastpin.storage.files import replacing
 
 
 def _largest(name: str, kind: str) -> Iterator[Output]:
@@ -105,26 +102,16 @@ def document(cycle: LoadCycle) -> dict[str, Any]:
     return document_of(CYCLE, cycle, units(cycle.states[0].problem))
 
 
-def write_csv(cycle: LoadCycle, path: Path) -> None:
-    """Write the values of all nodes as CSV, a line for each node. The header names the units.
-
-    Raises
-    ------
-    InputError
-        If the file can't be written.
-    """
-    unit, cells, header = units(cycle.states[0].problem), dict[str, list[Any]](), []
+def nodes_curve(cycle: LoadCycle) -> Curve:
+    """Return the values of all nodes, a row for each node. The headings name the units."""
+    unit, columns = units(cycle.states[0].problem), {}
     for name, (column, _) in cycle.columns().items():
         of_name = unit.get(NODE_KINDS[name], PLAIN)
-        header.append(f"{name} [{of_name.name}]" if of_name.name else name)
-        cells[name] = (of_name.factor * column).tolist()
-    del cells["theta"], header[0]
-    cells["behaviour"] = [WORDS[NodeBehaviour(value)] for value in cells["behaviour"]]
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["angle [deg]", *header])
-        for angle, *values in zip(cycle.theta.tolist(), *cells.values(), strict=True):
-            writer.writerow([angles.from_bottom(angle), *values])
+        columns[f"{name} [{of_name.name}]" if of_name.name else name] = of_name.factor * column
+    (_, theta), *others = columns.items()
+    angle = np.array([angles.from_bottom(each) for each in theta.tolist()])
+    words = np.array([WORDS[NodeBehaviour(value)] for value in cycle.behaviour])
+    return Curve({}, {"angle [deg]": angle, **dict(others), "behaviour": words})
 
 
 CONJUGATES = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from fastpin import casefile, figures, report, studies
+from fastpin import assess, casefile, figures, report, studies
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_OK, EXIT_READING, as_options, check_outputs, say, write_outputs
 
@@ -24,7 +24,7 @@ def run(options: argparse.Namespace) -> int:
                 nodes=options.nodes, progress=progress_to(bar),
             )  # fmt: skip
     files = [
-        (options.csv, lambda path: report.identify.write_loop(found, path)),
+        (options.csv, lambda path: assess.outputs.write_csv([report.identify.loop_curve(found)], path)),
         (options.plot, lambda path: figures.plot_identified(found, path, case.title)),
     ]
     code = write_outputs(files, options.json, lambda: report.identify.document(found, case.title))

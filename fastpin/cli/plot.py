@@ -11,6 +11,7 @@ from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_files
 from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS, kinds_with
+from fastpin.model.case import Case
 from fastpin.model.units import from_units
 
 
@@ -22,8 +23,9 @@ def run(options: argparse.Namespace) -> int:
     is_case = is_text and "case" in KINDS[options.kind].sources
     _check(options, is_case)
     figure = Path(f"{options.kind}.png") if options.output is None else options.output
-    title = ""
-    if not is_case:
+    case = casefile.read_case(options.result) if is_case else None
+    title = "" if case is None else case.title
+    if case is None:
         stored = storage.stored_case(options.result)
         title = stored.title
         if options.depth is not None and options.kind != "profile":  # which takes radii
@@ -31,12 +33,8 @@ def run(options: argparse.Namespace) -> int:
     if options.interface == "seat":
         title = seat_title(title)
     check_outputs({"--output": figure, "--csv": options.csv}, figures=("--output",))
-    if is_case:
-        case = casefile.read_case(options.result)
-        plot, title = figures.plotting.plot_of_case(options.kind, case), case.title
-    else:
-        plot = _plot(options)
-    numbers = [(options.csv, plot.write_numbers)] if plot.write_numbers else []
+    plot = _plot(options, case)
+    numbers = [(options.csv, plot.write_numbers)] if plot.curves else []
     code = write_files([(figure, lambda path: plot.save(path, title)), *numbers])
     if code == 0:
         say(f"wrote {figure}" + ("" if options.csv is None else f" and {options.csv}"))
@@ -60,13 +58,15 @@ def _check(options: argparse.Namespace, is_case: bool) -> None:
             raise InputError(flag(name), f"has no effect on {options.kind}; it is for {kinds_with(name)}")
 
 
-def _plot(options: argparse.Namespace) -> figures.sheet.Plot:
-    """Return the figure of a stored result, and say which part of the result it shows."""
+def _plot(options: argparse.Namespace, case: Case | None) -> figures.sheet.Plot:
+    """Return the figure of a case or a stored result, and say which part of the result it shows."""
     names = [*(name for name in KINDS[options.kind].options if name != "csv"), "after"]
     given = {name: value for name in names if (value := getattr(options, name)) is not None}
     progress_bar = Bar(1.0, "damage of the spectrum")
-    if options.interface == "seat":
-        subject: figures.states.Subject = figures.states.InMemory(load_seat(options.result))
+    if case is not None:
+        subject = figures.states.Subject(case)
+    elif options.interface == "seat":
+        subject = figures.states.Subject(load_seat(options.result))
     else:
         subject = figures.states.stored_subject(options.result, progress_to(progress_bar))
     with as_options(given), progress_bar:  # the bar moves for the damage of a spectrum only

@@ -268,7 +268,11 @@ class RunReport:
             writers.append((options.cycles, partial(figures.plot_cycles, held.result, title=case.title)))
         elif options.cycles is not None:
             code = terminal.fail(f"can't write {options.cycles}: no cycle came to its end", terminal.EXIT_FAILED)
-        writers.append((options.cycle_csv, lambda path: assess.cycle.write_csv(self._last_cycle(), path)))
+
+        def write_cycle(path: Path) -> None:
+            assess.outputs.write_csv([assess.cycle.nodes_curve(self._last_cycle())], path)
+
+        writers.append((options.cycle_csv, write_cycle))
         code = terminal.write_outputs(writers, options.json, lambda: document) or code
         if options.json != "-":
             self._print_states(read, cycle, found)
@@ -313,7 +317,7 @@ class RunReport:
     def _plot(self, held: Held, options: argparse.Namespace, path: Path) -> None:
         """Draw the tractions."""
         with terminal.as_options(["states"]):
-            drawn = figures.states.held_states(held, options.states)
+            drawn = figures.states.drawn_states(held, options.states)
         figures.plot_tractions(drawn, path, title=self.case.title)
         if drawn.note:
             to = sys.stderr if options.json == "-" else sys.stdout

@@ -1,5 +1,4 @@
 from . import load_cycle as load_cycle
-from . import outline as outline
 from . import plotting as plotting
 from . import sheet as sheet
 from . import sketch as sketch
@@ -22,13 +21,13 @@ from .laminates import plot_stiffness as plot_stiffness
 from .laminates import plot_strength as plot_strength
 from .load_cycle import plot_loops as plot_loops
 from .load_cycle import plot_slip as plot_slip
-from .outline import plot_outline as plot_outline
 from .plotting import result_html as result_html
 from .plotting import state_html as state_html
 from .sketch import plot_lug as plot_lug
 from .sketch import plot_sketch as plot_sketch
 from .stick_slip import plot_stick_slip as plot_stick_slip
 from .stress import plot_hoop_stress as plot_hoop_stress
+from .stress import plot_outline as plot_outline
 from .stress import plot_stress_field as plot_stress_field
 from .stress import plot_stress_profile as plot_stress_profile
 from .sweep import plot_sweep as plot_sweep

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterSciNotation, LogLocator, MaxNLocator, NullLocator
 
 from fastpin.assess.cycle import cycles_curve
-from fastpin.assess.outputs import ROUNDING, write_csv
+from fastpin.assess.outputs import ROUNDING
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import Subject, with_cycles
@@ -63,7 +63,7 @@ def cycles_of(result: Result) -> Plot:
         raise InputError("cycles", "the history has no repeated blocks")
     return Plot(
         lambda look: _draw(look, result),
-        lambda path: write_csv([cycles_curve(result.problem, result.cycles)], path),
+        [cycles_curve(result.problem, result.cycles)],
         f"Line charts of the changes that each of {len(result.cycles):,} cycles makes.",
         "Changes of the tractions over each cycle, its dissipation, and the rotation of the pin in all.",
     )

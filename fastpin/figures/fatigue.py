@@ -14,7 +14,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.assess.crack import growth_curve
 from fastpin.assess.fatigue import assessment_words, fatigue_bodies, fatigue_curve, spectrum_curve
-from fastpin.assess.outputs import write_csv
 from fastpin.cracks import Growth
 from fastpin.damage import CRITERIA, NO_CRACK, SPECTRUM_CRITERIA, Fatigue, SpectrumDamage, cycle_states, fatigue
 from fastpin.damage.assessed import MOST_REFINED
@@ -33,6 +32,9 @@ from fastpin.states.choice import span_of
 
 PLANES = 40
 """Planes that are drawn as short lines, spread over the edge."""
+
+AnyFatigue = Fatigue | SpectrumDamage
+"""Fatigue over a cycle, or the damage of a spectrum."""
 
 LEAST = 0.02
 """Least parameter with a plane, in parts of the largest."""
@@ -64,7 +66,7 @@ def _assessed_plot(subject: Subject, how: FatigueAssessment) -> Plot:
     if how.method != "edge" or how.angles is not None:
         notes.append("the figure shows the whole edge; fastpin show prints the places and the method of [fatigue]")
     edges = how.changed(method="edge", length=None, angles=None)
-    return replace(spectrum_of(subject.whole().assessed_fatigue(edges, subject.progress)), notes=notes)
+    return replace(fatigue_of(subject.whole().assessed_fatigue(edges, subject.progress)), notes=notes)
 
 
 def _spectrum_plot(subject: Subject, criterion: Criterion, body: Body | None, depth: float | None) -> Plot:
@@ -82,63 +84,12 @@ def _spectrum_plot(subject: Subject, criterion: Criterion, body: Body | None, de
     straight = len(result) > MOST_REFINED
     how: dict[str, Any] = {"depth": depth, "straight": straight, "progress": subject.progress}
     found = [result.spectrum_damage(criterion, one, **how) for one in bodies]
-    plot = spectrum_of(found)
+    plot = fatigue_of(found)
     words = f"the stresses of {len(result):,} states are those of straight lines between the nodes"
     return replace(plot, notes=[words]) if straight else plot
 
 
-def spectrum_of(found: Sequence[SpectrumDamage]) -> Plot:
-    """Return the damage of one spectrum along the edge, with its hot spot and planes, and below it the life.
-
-    Raises
-    ------
-    InputError
-        If they are not of one problem and one criterion, or their points not at one depth.
-    """
-    each = checks.instances("found", found, SpectrumDamage, "damage of a spectrum, such as result.spectrum_damage()")
-    _check_alike(each)
-    edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in found)
-    return Plot(
-        lambda look: _draw_spectrum(look, found),
-        lambda path: write_csv([spectrum_curve(one) for one in found], path),
-        f"Line chart of the damage by {criterion_title(found[0].criterion)} along the edge of the {edges}.",
-        f"Damage of one spectrum by {criterion_title(found[0].criterion)} along the edge of the {edges}, with its hot "
-        "spot, and the life. Short lines are the worst planes.",
-    )
-
-
-def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
-    sheet = look.sheet([2.2, 2.2], extra=1.2)
-    axes, handles = sheet.axes, list[Line2D]()
-    sheet.grid()
-    names = [edge_body(one.problem, one.body) for one in damages]
-    for place, one in enumerate(damages):
-        spot, before = one.hot_spot, f"{names[place]}: " if len(damages) > 1 else ""
-        angle, order = _by_angle(one)
-        damage, colour = one.damage.ravel()[order], COLOURS[2 * place + 1]
-        axes[0, 0].plot(angle, damage, **line(2 * place))
-        handles += _draw_further(axes[0, 0], one, one.damage.ravel(), COLOURS[2 * place])
-        if math.isnan(spot.theta):
-            handles.append(Line2D([], [], linestyle="none", label=f"{before}no damage"))
-            continue
-        axes[0, 0].plot(angles.from_bottom(spot.theta), spot.damage, "o", markersize=4.5, color=colour)
-        median = f", median life {spot.life * 10.0**one.shift:.3g}" if one.shift else ""
-        words = point_words(one.problem, one.body, spot.theta, spot.depth)
-        where = f"{before}{spot.life:.3g} spectra {words}{median}".replace("-", "−")
-        handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
-        _draw_planes(axes[0, 0], angle, damage, (one.plane.ravel() - one.theta.ravel())[order])
-        axes[1, 0].semilogy(angle, np.where(damage > 0.0, one.life.ravel()[order], np.nan), **line(2 * place))
-    highest = max(one.hot_spot.damage for one in damages)
-    if highest > 0.0:
-        handles.append(Line2D([], [], label="worst planes", color="0.3", linewidth=1.0))
-        axes[0, 0].set_ylim(0.0, 1.15 * highest)
-        axes[1, 0].set_ylim(0.5 / highest, 1e4 / highest)
-    axes[0, 0].set_ylabel(f"damage of a spectrum,\n{criterion_title(damages[0].criterion)}")
-    axes[1, 0].set_ylabel("life (spectra)")
-    return _finish(sheet, look, damages, handles)
-
-
-def fatigue_of(found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[SpectrumDamage]) -> Plot:
+def fatigue_of(found: AnyFatigue | Sequence[AnyFatigue]) -> Plot:
     """Draw the parameter of a criterion along the edge, with its hot spot, and below it the life if it is known.
 
     Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
@@ -148,79 +99,85 @@ def fatigue_of(found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[Sp
     bush and the plate round it, share the panels.
     """
     several: list[Any] = list(found) if isinstance(found, (list, tuple)) else [found]
-    if several and isinstance(several[0], SpectrumDamage):
-        return spectrum_of(several)
+    of_spectrum = bool(several) and isinstance(several[0], SpectrumDamage)
+    kind: type[Any] = Fatigue
     wanted = "a fatigue result, such as result.fatigue(...)"
-    each = checks.instances("found", several, Fatigue, wanted)
+    if of_spectrum:
+        kind, wanted = SpectrumDamage, "damage of a spectrum, such as result.spectrum_damage()"
+    each: Sequence[AnyFatigue] = checks.instances("found", several, kind, wanted)
     if not each:
         raise InputError("found", f"must be {wanted}, not an empty list")
-    _check_alike(each)
+    if any(one.criterion != each[0].criterion or one.problem != each[0].problem for one in each):
+        raise InputError("found", "must be of one problem and one criterion")
+    if any(np.ptp(one.depth.ravel()[_on_hole(one)]) > 0.0 for one in each):
+        raise InputError("found", "must be of points at one depth")
     edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in each)
-    life = " and the life" if any(one.life is not None for one in each) else ""
+    title, life = criterion_title(each[0].criterion), " and the life" * any(one.life is not None for one in each)
+    drawn, shown = f"{title} parameter", f"Parameter {title}"
+    if of_spectrum:
+        drawn, shown = f"damage by {title}", f"Damage of one spectrum by {title}"
     return Plot(
         lambda look: _draw(look, each),
-        lambda path: write_csv([fatigue_curve(one) for one in each], path),
-        f"Line chart of the {criterion_title(each[0].criterion)} parameter along the edge of the {edges}.",
-        f"Parameter {criterion_title(each[0].criterion)} along the edge of the {edges}, with its hot spot{life}. Short "
-        "lines are the worst planes.",
+        [spectrum_curve(one) if isinstance(one, SpectrumDamage) else fatigue_curve(one) for one in each],
+        f"Line chart of the {drawn} along the edge of the {edges}.",
+        f"{shown} along the edge of the {edges}, with its hot spot{life}. Short lines are the worst planes.",
     )
 
 
 plot_fatigue = plotter("plot_fatigue", fatigue_of)
 
 
-def _check_alike(found: Sequence[Fatigue] | Sequence[SpectrumDamage]) -> None:
-    """Refuse unlike problems, criteria or depths."""
-    if any(one.criterion != found[0].criterion or one.problem != found[0].problem for one in found):
-        raise InputError("found", "must be of one problem and one criterion")
-    if any(np.ptp(one.depth.ravel()[_on_hole(one)]) > 0.0 for one in found):
-        raise InputError("found", "must be of points at one depth")
-
-
-def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
+def _draw(look: Look, found: Sequence[AnyFatigue]) -> Sheet:
     lives = {k: one.life.ravel() for k, one in enumerate(found) if one.life is not None and np.isfinite(one.life).any()}
     sheet = look.sheet([2.2] * (2 if lives else 1), extra=1.2)
-    axes = sheet.axes
     sheet.grid()
-    top, handles = axes[0, 0], list[Line2D]()
-    of_parameter = units(found[0].problem)[found[0].kind]
-    factor, unit = of_parameter.scale([one.hot_spot.parameter for one in found])
-    names = [edge_body(one.problem, one.body) for one in found]
+    (top, *below), handles = sheet.axes[:, 0], list[Line2D]()
+    words, passes, factor, unit = "damage of a spectrum,\n", "spectra", 1.0, ""
+    if isinstance(found[0], Fatigue):
+        of_parameter = units(found[0].problem)[found[0].kind]
+        words, passes = "parameter of\n", "cycles"
+        factor, unit = of_parameter.scale([_worst(one) for one in found])
     for place, one in enumerate(found):
-        handles += _draw_parameter(top, one, factor, place, names[place] if len(found) > 1 else "")
-    values = np.concatenate([factor * one.parameter.ravel() for one in found])
+        name = edge_body(one.problem, one.body) if len(found) > 1 else ""
+        handles += _draw_values(top, one, factor, place, name)
+    if any(one.plane is not None and not math.isnan(one.hot_spot.theta) for one in found):
+        handles.append(Line2D([], [], label="worst planes", color="0.3", linewidth=1.0))
+    values = np.concatenate([factor * _values(one) for one in found])
     lowest, highest = float(values.min()), float(values.max())
     if values.any():
         top.set_ylim(min(1.15 * lowest, 0.0), max(1.15 * highest, 0.0))
     else:
         top.set_yticks([0.0])  # no other value has a meaning
-    top.set_ylabel(quantity(f"parameter of\n{criterion_title(found[0].criterion)}", unit))
+    top.set_ylabel(quantity(f"{words}{criterion_title(found[0].criterion)}", unit))
     for k, life in lives.items():
         angle, order = _by_angle(found[k])
-        axes[1, 0].semilogy(angle, np.where(np.isfinite(life), life, np.nan)[order], **line(2 * k))
+        below[0].semilogy(angle, np.where(np.isfinite(life), life, np.nan)[order], **line(2 * k))
     if lives:
         shortest = min(float(np.nanmin(life)) for life in lives.values())
-        axes[1, 0].set_ylabel("life (cycles)")
-        axes[1, 0].set_ylim(0.5 * shortest, 1e4 * shortest)
-    return _finish(sheet, look, found, handles)
-
-
-def _finish(
-    sheet: Sheet, look: Look, found: Sequence[Fatigue] | Sequence[SpectrumDamage], handles: Sequence[Line2D]
-) -> Sheet:
-    """Add the axes of angles, the legend and the heading with bodies and depths."""
+        below[0].set_ylabel(f"life ({passes})")
+        below[0].set_ylim(0.5 * shortest, 1e4 * shortest)
     sheet.go_round()
     sheet.legend(handles, min(len(handles), 3))
     parts, length = [], units(found[0].problem)["length"]
     for one in found:
         depth = float(one.depth.ravel()[0])
-        place = f"{short(depth, length)} below the edge" if depth else "on the edge"
-        parts.append(f"{edge_body(one.problem, one.body)}, {place}")
+        where = f"{short(depth, length)} below the edge" if depth else "on the edge"
+        parts.append(f"{edge_body(one.problem, one.body)}, {where}")
     sheet.head(look.title, "; ".join(parts), caption=caption(found[0].problem))
     return sheet
 
 
-def _by_angle(found: Fatigue | SpectrumDamage) -> tuple[np.ndarray, np.ndarray]:
+def _values(found: AnyFatigue) -> np.ndarray:
+    """What is drawn of all points: the damage of a spectrum, or the parameter."""
+    return (found.damage if isinstance(found, SpectrumDamage) else found.parameter).ravel()
+
+
+def _worst(found: AnyFatigue) -> float:
+    """The value at the hot spot."""
+    return found.hot_spot.damage if isinstance(found, SpectrumDamage) else found.hot_spot.parameter
+
+
+def _by_angle(found: AnyFatigue) -> tuple[np.ndarray, np.ndarray]:
     """The angles from the bottom of the points of the hole, deg, in increasing order, and the order of these points."""
     own = np.flatnonzero(_on_hole(found))
     angle = np.array([angles.from_bottom(place) for place in found.theta.ravel()[own].tolist()])
@@ -228,13 +185,13 @@ def _by_angle(found: Fatigue | SpectrumDamage) -> tuple[np.ndarray, np.ndarray]:
     return angle[order], own[order]
 
 
-def _on_hole(found: Fatigue | SpectrumDamage) -> np.ndarray:
+def _on_hole(found: AnyFatigue) -> np.ndarray:
     """Which points do not lie on a further edge of a plate of any outline."""
     parts = further_parts(found.problem, found.body, found.theta, found.depth)
     return np.array([part is None for part in parts])
 
 
-def _draw_further(panel: Axes, found: Fatigue | SpectrumDamage, values: np.ndarray, colour: str) -> list[Line2D]:
+def _draw_further(panel: Axes, found: AnyFatigue, values: np.ndarray, colour: str) -> list[Line2D]:
     """Draw the points on further edges over their angle from the hole's centre, and return the entry of the legend."""
     beyond = ~_on_hole(found)
     if not beyond.any():
@@ -245,26 +202,29 @@ def _draw_further(panel: Axes, found: Fatigue | SpectrumDamage, values: np.ndarr
     return [Line2D([], [], label="other edges, by angle", **style)]
 
 
-def _draw_parameter(panel: Axes, found: Fatigue, factor: float, place: int, name: str) -> list[Line2D]:
+def _draw_values(panel: Axes, found: AnyFatigue, factor: float, place: int, name: str) -> list[Line2D]:
     """Draw one curve with its hot spot, planes and limit, and return the entries of the legend."""
     (angle, order), spot = _by_angle(found), found.hot_spot
-    parameter, colour = factor * found.parameter.ravel()[order], COLOURS[2 * place + 1]
-    panel.plot(angle, parameter, **line(2 * place))
+    values, colour = factor * _values(found)[order], COLOURS[2 * place + 1]
+    panel.plot(angle, values, **line(2 * place))
     before = f"{name}: " if name else ""
     handles = [Line2D([], [], label=name, **line(2 * place))] if name else []
-    handles += _draw_further(panel, found, factor * found.parameter.ravel(), COLOURS[2 * place])
+    handles += _draw_further(panel, found, factor * _values(found), COLOURS[2 * place])
     if math.isnan(spot.theta):
-        return [*handles, Line2D([], [], linestyle="none", label=f"{before}{NO_CRACK}")]
-    panel.plot(angles.from_bottom(spot.theta), factor * spot.parameter, "o", markersize=4.5, color=colour)
+        nothing = "no damage" if isinstance(found, SpectrumDamage) else NO_CRACK
+        return [*handles, Line2D([], [], linestyle="none", label=f"{before}{nothing}")]
+    panel.plot(angles.from_bottom(spot.theta), factor * _worst(found), "o", markersize=4.5, color=colour)
     words = point_words(found.problem, found.body, spot.theta, spot.depth)
-    where = f"{before}hot spot {words}".replace("-", "−")
-    handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
+    where = f"{before}hot spot {words}"
+    if isinstance(found, SpectrumDamage):
+        median = f", median life {spot.life * 10.0**found.shift:.3g}" if found.shift else ""
+        where = f"{before}{spot.life:.3g} spectra {words}{median}"
+    look: Any = {"linestyle": "none", "marker": "o", "markersize": 4.5, "color": colour}
+    handles.append(Line2D([], [], label=where.replace("-", "−"), **look))
     if found.plane is not None:
-        _draw_planes(panel, angle, parameter, (found.plane.ravel() - found.theta.ravel())[order])
-        if place == 0:
-            handles.append(Line2D([], [], color="0.3", linewidth=1.0, label="worst planes"))
-    limit = None if found.limit is None else float(np.ravel(found.limit)[0])  # all points have one material
-    if limit is not None and limit < 3.0 * spot.parameter:
+        _draw_planes(panel, angle, values, (found.plane.ravel() - found.theta.ravel())[order])
+    limit = None if isinstance(found, SpectrumDamage) or found.limit is None else float(np.ravel(found.limit)[0])
+    if limit is not None and limit < 3.0 * _worst(found):  # all points have one material
         panel.axhline(factor * limit, **line(2 * place + 2, 1))
         handles.append(Line2D([], [], label=f"{before}fatigue limit", **line(2 * place + 2, 1)))
     return handles
@@ -299,7 +259,7 @@ def crack_growth_of(found: Growth | Sequence[Growth]) -> Plot:
     words = "; ".join(f"at {_place(one)}: {one.words}" for one in each)
     return Plot(
         lambda look: _draw_cracks(look, each),
-        lambda path: write_csv([growth_curve(one) for one in each], path),
+        [growth_curve(one) for one in each],
         f"Line chart of the range of the stress intensity and of the growth over the length of a crack {words}.",
         "Range of the stress intensity over the length of a crack, with the threshold, and the growth in a cycle.",
         doubts=[str(doubt) for one in each for doubt in one.doubts],

@@ -10,16 +10,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.assess.outputs import Curve, write_csv
+from fastpin.assess.outputs import Curve
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import Subject, problem_of
+from fastpin.figures.states import Subject, of_joint
 from fastpin.figures.style import MAX_NAMED, Line, caption, draw_zero, line, quantity
-from fastpin.model import Case, LoadHistory, Problem, Profile, angles, checks
+from fastpin.model import LoadHistory, Problem, Profile, angles, checks
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import LOOKED_AT
 from fastpin.model.units import units
-from fastpin.solver.result import Result
 
 Folded = tuple[np.ndarray, list[int], list[tuple[int, int, int]]]
 """Loads of corners, the numbers of these corners, and the repeated blocks, see :func:`_folded`."""
@@ -118,16 +117,11 @@ def _shade(panel: Axes, repeated: list[tuple[int, int, int]], named: bool) -> No
 
 
 def gap_plot(subject: Subject) -> Plot:
-    """Return the profiles along the rim of the joint of a result."""
-    return gap_of(subject.result())
-
-
-def gap_of(joint: Problem | Case | Result) -> Plot:
     """Draw the initial gaps of hole and pin, and the coefficient of friction, along the rim, as far as they vary.
 
     A positive gap is missing material. A joint without profiles raises :class:`InputError`.
     """
-    problem = problem_of(joint)
+    problem = subject.problem
     if not problem.profiles:
         raise InputError("gap", "there is no initial gap, and the friction is the same all round")
     curve = profile_curve(problem)
@@ -135,14 +129,14 @@ def gap_of(joint: Problem | Case | Result) -> Plot:
     words = " and ".join(shown)
     return Plot(
         lambda look: _draw_gap(look, problem, curve),
-        lambda path: write_csv([curve], path),
+        [curve],
         f"Line charts of {words} over the angle round the hole.",
         f"{words[0].upper()}{words[1:]} along the rim."
         + (" A positive gap is missing material; the clearance adds to it." if problem.gap else ""),
     )
 
 
-plot_gap = plotter("plot_gap", gap_of)
+plot_gap = plotter("plot_gap", gap_plot, of_joint)
 
 
 def profile_curve(problem: Problem) -> Curve:

@@ -13,7 +13,7 @@ from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import COLOURS, caption, line, quantity
 from fastpin.model import checks, loads
 from fastpin.model.units import units
-from fastpin.report.identify import write_loop
+from fastpin.report.identify import loop_curve
 from fastpin.studies.identification import Identified
 
 
@@ -27,7 +27,7 @@ def identified_of(found: Identified) -> Plot:
     checks.instance("found", found, Identified, "an Identified")
     return Plot(
         lambda look: _draw(look, found),
-        lambda path: write_loop(found, path),
+        [loop_curve(found)],
         f"Measured samples of {found.names[1]} over {found.names[0]} on the computed loop, and energies by cycle.",
         "Measured samples and computed loop, and the energy of each whole cycle.",
         doubts=found.notes,

@@ -77,17 +77,13 @@ class Kind(NamedTuple):
     options : tuple of str
         Names of :data:`KIND_OPTIONS`, and "csv" if the figure has numbers.
     sources : tuple of str
-        What the figure may show: "result" is the result of a run, "life" a life of wear, "case" a case file. For a case
-        file the function is ``KIND_of(case)``.
-    only : str
-        The plates that alone have the figure, such as "laminates"; empty if all have it.
+        What the figure may show: "result" is the result of a run, "life" a life of wear, "case" a case file.
     """
 
     file: str
     words: str
     options: tuple[str, ...]
     sources: tuple[str, ...] = ("result", "life")
-    only: str = ""
 
 
 SOURCES = {"result": "the result of a run", "life": "a life of wear", "case": "a case file"}
@@ -100,25 +96,14 @@ KINDS = {
     "sketch": Kind("sketch", "pin, plate and loads", ("states",), sources=("result", "life", "case")),
     "gap": Kind("history", "initial gap and friction along the rim", ("csv",), sources=("result", "life", "case")),
     "hoop": Kind("stress", "hoop stress round hole and pin", ("states", "csv", "body")),
-    "outline": Kind(
-        "outline", "hoop stress along the edges of a plate of any outline", ("states", "csv"), only="outlines"
-    ),
+    "outline": Kind("stress", "hoop stress along the edges of a plate of any outline", ("states", "csv")),
     "profile": Kind("stress", "stresses below the edge", ("states", "csv", "body", "angle", "depth")),
     "map": Kind(
         "stress", "one component of the stress in both bodies", ("states", "csv", "body", "component", "extent")
     ),
-    "stiffness": Kind(
-        "laminates",
-        "moduli of a laminate by direction",
-        ("csv",),
-        sources=("result", "life", "case"),
-        only="laminates",
-    ),
+    "stiffness": Kind("laminates", "moduli of a laminate by direction", ("csv",), sources=("result", "life", "case")),
     "strength": Kind(
-        "laminates",
-        "strength ratio of a laminate round the hole",
-        ("states", "csv", "criterion", "depth"),
-        only="laminates",
+        "laminates", "strength ratio of a laminate round the hole", ("states", "csv", "criterion", "depth")
     ),
     "cycles": Kind("cycles", "changes in each cycle", ("csv",), sources=("result",)),
     "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv", "corners")),

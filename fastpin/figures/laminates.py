@@ -5,23 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from fastpin.assess.outputs import Curve, write_csv
+from fastpin.assess.outputs import Curve
 from fastpin.damage.hole_strength import JointStrength, joint_strength, laminate_of
 from fastpin.damage.laminates import MODES
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import DrawnStates, InMemory, Subject, name_states, problem_of, state_lines
+from fastpin.figures.states import DrawnStates, Subject, name_states, of_joint, of_states, state_lines
 from fastpin.figures.style import ANGLE, angle_axis, line, quantity, short
-from fastpin.model import Case, Problem, StrengthAssessment, angles, checks
+from fastpin.model import StrengthAssessment, angles, checks
 from fastpin.model.laminate import Laminate, in_axes
 from fastpin.model.ply import PlyCriterion
 from fastpin.model.units import Unit, units
-from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 
 LEAST_APART = 10.0
@@ -32,29 +30,24 @@ MOST_RATIO = 5.0
 
 
 def stiffness_plot(subject: Subject) -> Plot:
-    """Return the stiffness of the laminate of a result."""
-    return stiffness_of(subject.result())
-
-
-def stiffness_of(joint: Problem | Case | Result) -> Plot:
     """Draw Young's modulus and the shear modulus of a laminate in all directions, and the directions of its plies.
 
     The bottom of the hole is at the bottom of the figure. An isotropic plate raises :class:`InputError`.
     """
-    problem = problem_of(joint)
+    problem = subject.problem
     plate = laminate_of(problem)
     unit = units(problem)["modulus"]
     curve = stiffness_curve(plate, unit)
     words = "Young's modulus and shear modulus of the laminate by direction"
     return Plot(
         lambda look: _draw_stiffness(look, unit, plate, curve),
-        partial(write_csv, [curve]),
+        [curve],
         f"Polar charts of {words}.",
         f"{words}. Thin lines show the directions of the plies.",
     )
 
 
-plot_stiffness = plotter("plot_stiffness", stiffness_of)
+plot_stiffness = plotter("plot_stiffness", stiffness_plot, of_joint)
 
 
 def stiffness_curve(plate: Laminate, unit: Unit) -> Curve:
@@ -117,7 +110,7 @@ def _strength_plot(
     return strength_of(subject.states(states), how, criterion, depth)
 
 
-plot_strength = plotter("plot_strength", _strength_plot, InMemory)
+plot_strength = plotter("plot_strength", _strength_plot, of_states)
 
 
 def strength_of(
@@ -143,7 +136,7 @@ def strength_of(
     words = f"first ply by {given.criterion}, {place}"
     return Plot(
         lambda look: _draw_strength(look, drawn, found, curves, words),
-        partial(write_csv, curves),
+        curves,
         "Line chart of the strength ratio over the angle round the hole.",
         f"Strength ratio of the {words}.",
         notes=drawn.notes,

@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -16,9 +15,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.assess.cycle import CONJUGATES, loop_curve, natural_sizes
-from fastpin.assess.cycle import write_csv as write_cycle
-from fastpin.assess.outputs import ROUNDING, Curve, write_csv
+from fastpin.assess.cycle import CONJUGATES, loop_curve, natural_sizes, nodes_curve
+from fastpin.assess.outputs import ROUNDING, Curve
 from fastpin.errors import InputError
 from fastpin.figures import style
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
@@ -87,7 +85,7 @@ def slip_of(cycle: LoadCycle) -> Plot:
     """
     return Plot(
         lambda look: _draw_slip(look, cycle),
-        partial(write_cycle, cycle),
+        [nodes_curve(cycle)],
         f"Line charts of slip and friction energy round the hole, corners {cycle.first:,} to {cycle.last:,}.",
         "Slip of each place over the cycle, and its friction energy or the range of its shear traction.",
     )
@@ -177,9 +175,7 @@ def loops_plot(
     if corners is not None:
         chosen = _between(subject, corners)
         of_chosen = loops_of([chosen], abscissa)
-        return replace(
-            of_chosen, write_numbers=partial(write_csv, [loop_curve(chosen)]), notes=[dissipated_words(chosen)]
-        )
+        return replace(of_chosen, curves=[loop_curve(chosen)], notes=[dissipated_words(chosen)])
     result = with_cycles(subject)
     places, refusal = chosen_cycles(result.cycles, cycle), None
     shown = [places[k] for k in style.spread(len(places), style.MAX_NAMED)]
@@ -202,7 +198,7 @@ def loops_plot(
     plot = loops_of(list(found.values()), abscissa, [f"cycle {number:,}" for number in found])
     notes += [f"cycle {number:,}: {dissipated_words(one)}" for number, one in found.items()]
     doubts += [doubt for one in found.values() if (doubt := area_doubt(one))]
-    return replace(plot, write_numbers=partial(write_csv, loops), notes=notes, doubts=doubts)
+    return replace(plot, curves=loops, notes=notes, doubts=doubts)
 
 
 def loops_of(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None, names: Sequence[str] = ()) -> Plot:

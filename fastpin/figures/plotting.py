@@ -17,10 +17,9 @@ from matplotlib.figure import Figure
 from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS, SOURCES, kinds_with
 from fastpin.figures.sheet import Look, Plot, draw_plot
-from fastpin.figures.states import InMemory, Subject, drawn_states, with_stored_cycles
+from fastpin.figures.states import Subject, drawn_states, with_stored_cycles
 from fastpin.figures.style import SCREEN_DPI
 from fastpin.figures.tractions import plot_tractions
-from fastpin.model.case import Case
 from fastpin.model.checks import choice, instance
 from fastpin.model.wear import cycles_text
 from fastpin.report.states import state_table
@@ -53,7 +52,7 @@ def plot_of(kind: str, subject: Subject, after: float | None = None, **options: 
     if subject.source == "life" and shows_states and (after is not None or "states" not in options):
         life = with_stored_cycles(subject)
         after = life[-1].cycle if after is None else after
-        subject, on_profile = InMemory(Result.of_life(life, after)), f"after {cycles_text(after)}"
+        subject, on_profile = Subject(Result.of_life(life, after)), f"after {cycles_text(after)}"
     module = importlib.import_module(f"fastpin.figures.{KINDS[kind].file}")
     plot: Plot = getattr(module, f"{kind.replace('-', '_')}_plot")(subject, **options)
     if not on_profile:
@@ -63,18 +62,6 @@ def plot_of(kind: str, subject: Subject, after: float | None = None, **options: 
         return plot.draw(replace(look, title=", ".join(filter(None, [look.title, on_profile]))))
 
     return replace(plot, draw=draw, notes=[f"the figure shows a cycle {on_profile}", *plot.notes])
-
-
-def plot_of_case(kind: str, case: Case) -> Plot:
-    """Return the figure of a case, of a kind of :data:`fastpin.figures.kinds.KINDS` that shows cases.
-
-    Raises
-    ------
-    InputError
-        If the case can't be drawn in this way.
-    """
-    plot: Plot = getattr(importlib.import_module(f"fastpin.figures.{KINDS[kind].file}"), f"{kind}_of")(case)
-    return plot
 
 
 def plot_result(
@@ -94,7 +81,7 @@ def plot_result(
     for name in options:
         if name not in KINDS[kind].options and kinds_with(name):
             raise InputError(name, f"has no effect on {kind}; it is for {kinds_with(name)}")
-    return draw_plot(lambda: plot_of(kind, InMemory(result), **options), path, title, width, dpi, ax)
+    return draw_plot(lambda: plot_of(kind, Subject(result), **options), path, title, width, dpi, ax)
 
 
 def state_html(state: State) -> str:

@@ -13,27 +13,13 @@ from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
-from fastpin.assess.outputs import write_csv
 from fastpin.assess.wear import coefficient_words, cycles_curve, damage_curve, followed_words, scar_curves
 from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import Criterion, criterion_title
+from fastpin.figures import style
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.sketch import load_ranges
 from fastpin.figures.states import Subject, with_stored_cycles
-from fastpin.figures.style import (
-    ANGLE,
-    COLOURS,
-    MAX_NAMED,
-    Line,
-    angle_axis,
-    caption,
-    draw_grid,
-    line,
-    quantity,
-    range_text,
-    short,
-    without_rounding,
-)
 from fastpin.figures.sweep import round_numbers
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import Body, edge_body
@@ -50,13 +36,13 @@ DECADES = 6
 NEAR = 1e-4
 """Damage from which on a figure shows the damage 1, of a crack, too."""
 
-SURFACE = line(1, 0, 1.6)
+SURFACE = style.line(1, 0, 1.6)
 """Line of the worn surface."""
 
-CRACK: Line = {"marker": "o", "markersize": 5.0, "linestyle": "none", "color": COLOURS[1]}
+CRACK: style.Line = {"marker": "o", "markersize": 5.0, "linestyle": "none", "color": style.COLOURS[1]}
 """Mark of the first crack."""
 
-LEFT, EVER = line(0, 0), line(2, 1)
+LEFT, EVER = style.line(0, 0), style.line(2, 1)
 """Lines of the largest damage of all material still there, and of all material."""
 
 
@@ -67,7 +53,7 @@ def scar_plot(subject: Subject) -> Plot:
     numbers = ", ".join(f"{each.cycle:,}" for each in shown)
     return Plot(
         lambda look: _draw_scar(look, life, shown),
-        lambda path: write_csv(scar_curves(life), path),
+        scar_curves(life),
         f"Line charts of worn depth and pressure along the hole after {numbers} cycles.",
         "Depth worn off both bodies after some cycles, and the nodal pressure on these profiles at the end of one more "
         "cycle.",
@@ -80,7 +66,7 @@ def wear_plot(subject: Subject) -> Plot:
     life = with_stored_cycles(subject)
     return Plot(
         lambda look: _draw_wear(look, life),
-        lambda path: write_csv([cycles_curve(life)], path),
+        [cycles_curve(life)],
         f"Line charts over {cycles_text(life[-1].cycle)} of volume, depth, dissipation and pressure.",
         "Worn volume, largest depth, dissipation of one cycle, and largest pressure over one cycle. A first cycle that "
         "begins with other loads than it ends with has no dissipation of a cycle.",
@@ -90,16 +76,16 @@ def wear_plot(subject: Subject) -> Plot:
 def life_caption(life: WearResult) -> str:
     """The parameters of a life of wear as text: those of its problem, the loads of its cycle, law and coefficients."""
     ranges = load_ranges(life[-1].states)
-    loads = ", ".join(range_text(life.problem, name, span) for name, span in ranges.items())
+    loads = ", ".join(style.range_text(life.problem, name, span) for name, span in ranges.items())
     words = ", ".join(f"{body} {text}" for body, text in coefficient_words(life).items())
     control = f", tolerance {life.tolerance:g}" if life.tolerance else ", every cycle solved"
-    return f"{caption(life.problem)}; cycle: {loads or 'no load'}; {life.law} wear: {words}{control}"
+    return f"{style.caption(life.problem)}; cycle: {loads or 'no load'}; {life.law} wear: {words}{control}"
 
 
 def cycles_axis(panels: Sequence[Axes], numbers: np.ndarray) -> None:
     """Set the shared axis of cycles: logarithmic beyond 1 for a long life. The cycle 0 then stands at its left end."""
     panels[-1].set_xlabel("cycles")
-    if numbers[-1] <= MAX_NAMED:
+    if numbers[-1] <= style.MAX_NAMED:
         panels[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True, min_n_ticks=1))
         return
     first = float(numbers[numbers > 0].min())
@@ -113,10 +99,10 @@ def cycles_axis(panels: Sequence[Axes], numbers: np.ndarray) -> None:
 
 def _by_depth(life: WearResult) -> list[WornCycle]:
     """Return at most :data:`MAX_NAMED` stored cycles, evenly spread over the worn depth, the first and the last."""
-    if len(life) <= MAX_NAMED:
+    if len(life) <= style.MAX_NAMED:
         return list(life)
     depths = np.array([each.depth for each in life])
-    wanted = np.linspace(depths[0], depths[-1], MAX_NAMED)
+    wanted = np.linspace(depths[0], depths[-1], style.MAX_NAMED)
     near = {0, len(life) - 1, *(int(np.argmin(np.abs(depths - depth))) for depth in wanted[1:-1])}
     return [life[k] for k in sorted(near)]
 
@@ -128,7 +114,7 @@ def _part(life: WearResult, shown: Sequence[WornCycle]) -> str:
 
 def _draw_scar(look: Look, life: WearResult, shown: Sequence[WornCycle]) -> Sheet:
     unit, deepest = units(life.problem), max(each.depth for each in life)
-    depths = [without_rounding(each.gap_growth, deepest) for each in shown]
+    depths = [style.without_rounding(each.gap_growth, deepest) for each in shown]
     pressures = [each.states[-1].pressure for each in shown]
     sheet = look.sheet([2.0, 2.0], extra=1.4, sharex=True)
     sheet.grid()
@@ -143,9 +129,9 @@ def _draw_scar(look: Look, life: WearResult, shown: Sequence[WornCycle]) -> Shee
         highest = max(float(values.max()) for values in curves)
         factor, name = unit[kind].scale([highest])
         for place, values in enumerate(curves):
-            panel.plot(angles[order], factor * values[order], **line(place, place))
+            panel.plot(angles[order], factor * values[order], **style.line(place, place))
         _from_zero(panel, factor * highest)
-        panel.set_ylabel(quantity(words, name))
+        panel.set_ylabel(style.quantity(words, name))
     upper.invert_yaxis()  # a scar goes down
     _contact_axis(lower, life, angles)
     sheet.figure.align_ylabels(sheet.axes)
@@ -153,11 +139,11 @@ def _draw_scar(look: Look, life: WearResult, shown: Sequence[WornCycle]) -> Shee
     head = [
         "" if life.complete else followed_words(life),
         _part(life, shown),
-        f"largest depth of all {short(deepest, unit['displacement'])}",
+        f"largest depth of all {style.short(deepest, unit['displacement'])}",
         f"{100.0 * share:.3g} % of the volume from the pin" if 0.0 < share < 1.0 else "",
     ]
     sheet.head(look.title, "; ".join(filter(None, head)), caption=life_caption(life))
-    handles = [Line2D([], [], label=f"{each.cycle:,}", **line(k, k)) for k, each in enumerate(shown)]
+    handles = [Line2D([], [], label=f"{each.cycle:,}", **style.line(k, k)) for k, each in enumerate(shown)]
     sheet.legend(handles, min(len(handles), 4), "cycles")
     return sheet
 
@@ -179,8 +165,8 @@ def _contact_axis(panel: Axes, life: WearResult, angles: np.ndarray) -> None:
     low, high = (float(shown.min()), float(shown.max())) if shown.size else (-180.0, 180.0)
     margin = MARGIN * max(high - low, 10.0)
     panel.set_xlim(max(low - margin, -180.0), min(high + margin, 180.0))
-    angle_axis(panel)
-    panel.set_xlabel(ANGLE)
+    style.angle_axis(panel)
+    panel.set_xlabel(style.ANGLE)
 
 
 class PanelRow(NamedTuple):
@@ -204,7 +190,7 @@ def _rows(life: WearResult) -> list[PanelRow]:
     return [
         PanelRow("worn\nvolume", "work per stress", bodies, grows=True),
         PanelRow("largest\ndepth", "displacement", {"": np.array([each.depth for each in life])}, grows=True),
-        PanelRow("dissipated in\none cycle", "energy", {"": without_rounding(energies)}),
+        PanelRow("dissipated in\none cycle", "energy", {"": style.without_rounding(energies)}),
         PanelRow("largest\npressure", "traction", {"": np.array([each.largest_pressure for each in life])}),
     ]
 
@@ -217,10 +203,10 @@ def _draw_wear(look: Look, life: WearResult) -> Sheet:
         highest = max(float(np.nanmax(values)) for values in row.curves.values())
         factor, name = unit[row.kind].scale([highest])
         for place, values in enumerate(row.curves.values()):
-            style = line(place, place)
-            panel.plot(numbers, factor * values, marker="o", markersize=3.8 if len(life) <= 15 else 2.5, **style)
-        panel.set_ylabel(quantity(row.words, name))
-        if row.grows and numbers[-1] > MAX_NAMED and highest:
+            size = 3.8 if len(life) <= 15 else 2.5
+            panel.plot(numbers, factor * values, marker="o", markersize=size, **style.line(place, place))
+        panel.set_ylabel(style.quantity(row.words, name))
+        if row.grows and numbers[-1] > style.MAX_NAMED and highest:
             panel.set_yscale("log")
             panel.yaxis.set_major_locator(LogLocator(numticks=5))
             panel.yaxis.set_minor_locator(NullLocator())
@@ -231,7 +217,7 @@ def _draw_wear(look: Look, life: WearResult) -> Sheet:
     sheet.head(look.title, f"{followed_words(life)}, {life[-1].solved:,} solved", caption=life_caption(life))
     bodies = rows[0].curves
     if len(bodies) > 1:
-        sheet.legend([Line2D([], [], label=name, **line(k, k)) for k, name in enumerate(bodies)], len(bodies))
+        sheet.legend([Line2D([], [], label=name, **style.line(k, k)) for k, name in enumerate(bodies)], len(bodies))
     return sheet
 
 
@@ -245,7 +231,7 @@ def damage_of(life: WearResult, found: WornFatigue) -> Plot:
     """Return the damage of material that wears: its field at the end, and the largest one over the cycles."""
     return Plot(
         lambda look: _draw(look, life, found),
-        lambda path: write_csv([damage_curve(found)], path),
+        [damage_curve(found)],
         f"Map of the damage under the first surface of the {edge_body(found.problem, found.body)}, and its largest "
         f"value over {cycles_text(life[-1].cycle)}: {found.words}.",
         f"Damage by {criterion_title(found.criterion)} of the material under the first surface, and the largest damage "
@@ -302,9 +288,9 @@ def _draw_field(panel: Axes, found: WornFatigue) -> QuadContourSet | None:
     panel.set_xlim(max(low - margin, angle[0]), min(high + margin, angle[-1]))
     deep = found.depth[damage.max(axis=1) > 1e-3 * top] if top > 0.0 else found.depth
     panel.set_ylim(length * max(float(deep.max()), 2.0 * float(worn.max()), float(found.depth[1:2].sum())), 0.0)
-    panel.set_ylabel(quantity("depth under the\nfirst surface", name))
-    panel.set_xlabel(ANGLE)
-    angle_axis(panel)
+    panel.set_ylabel(style.quantity("depth under the\nfirst surface", name))
+    panel.set_xlabel(style.ANGLE)
+    style.angle_axis(panel)
     return filled
 
 
@@ -314,8 +300,8 @@ def _draw_growth(panel: Axes, found: WornFatigue) -> None:
     top, positive = float(ever.max()), left[left > 0.0]
     highest = max(top, 1.0) if top > NEAR else top
     if highest >= 1.0:
-        panel.axhline(1.0, **line(7, 2, 1.0))
-    if positive.size and found.cycles[-1] > MAX_NAMED:
+        panel.axhline(1.0, **style.line(7, 2, 1.0))
+    if positive.size and found.cycles[-1] > style.MAX_NAMED:
         panel.set_yscale("log")
         panel.set_ylim(max(0.5 * float(positive.min()), top * 10.0**-DECADES), 3.0 * highest)
         round_numbers(panel.yaxis, np.array(panel.get_ylim()))
@@ -324,6 +310,6 @@ def _draw_growth(panel: Axes, found: WornFatigue) -> None:
         panel.set_ylim(0.0, 1.08 * highest or 1.0)
     panel.plot(found.cycles, left, marker="o", markersize=3.0, **LEFT)
     panel.plot(found.cycles, ever, **EVER)
-    draw_grid(panel)
+    style.draw_grid(panel)
     cycles_axis([panel], found.cycles)
     panel.set_ylabel("largest damage")

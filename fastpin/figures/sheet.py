@@ -16,6 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.errors import InputError
 from fastpin.figures import style
 from fastpin.figures.style import ANGLE, CAPTION_SIZE, wrapped, wrapped_parts
@@ -121,8 +122,8 @@ class Plot:
     ----------
     draw : callable
         ``draw(look)`` draws a :class:`Sheet`.
-    write_numbers : callable or None
-        ``write_numbers(path)`` writes the numbers of the figure as CSV.
+    curves : sequence of Curve
+        The numbers of the figure, for a CSV file.
     instead : str
         The text in place of the figure, for readers who can't see it.
     caption : str
@@ -140,7 +141,7 @@ class Plot:
     """
 
     draw: Callable[[Look], Any]
-    write_numbers: Callable[[Path], object] | None = None
+    curves: Sequence[Curve] = ()
     instead: str = ""
     caption: str = ""
     notes: Sequence[str] = ()
@@ -153,6 +154,10 @@ class Plot:
     def save(self, path: Path, title: str = "") -> None:
         """Draw the figure and write it to a file."""
         Look(path, title, self.width).drawn(self)
+
+    def write_numbers(self, path: Path) -> None:
+        """Write the numbers of the figure as CSV."""
+        write_csv(self.curves, path)
 
 
 def draw_plot(

@@ -97,7 +97,7 @@ class Scale(NamedTuple):
 def sketch_plot(subject: Subject, states: StateChoice = None) -> Plot:
     """Return the sketch of the last one of some states; of the history's loads without a choice."""
     if states is None:
-        return sketch_of(subject.result())
+        return sketch_of(subject.shown)  # type: ignore[arg-type]
     drawn = subject.states(states)
     return replace(sketch_of(drawn[-1]), notes=drawn.notes)
 

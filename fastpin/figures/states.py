@@ -111,7 +111,7 @@ class DrawnStates(list[State]):
 
 
 def drawn_states(
-    result: Sequence[State] | State,
+    result: Sequence[State] | State | Held,
     states: StateChoice = None,
     most: int = style.MAX_NAMED,
     whole: bool = False,
@@ -121,8 +121,8 @@ def drawn_states(
 
     Parameters
     ----------
-    result : State, Result or sequence of State
-        Of one problem and on one grid.
+    result : State, Result, sequence of State or Held
+        Of one problem and on one grid. Of a held result no other states are read.
     states, most, whole
         See :func:`drawn_places`.
     extremes : collection
@@ -131,8 +131,13 @@ def drawn_states(
     Raises
     ------
     InputError
-        If there is no such state, or the states are not on one grid.
+        If there is no such state, the states are not on one grid, or a file can't be read.
     """
+    if isinstance(result, Held):
+        found, points, history = result.extremes, result.points, result.result.cycles
+        known = {each: found[each] for each in extremes if each in found}
+        places, marks, chosen = drawn_places(points, history, states, most, whole, lambda: marked_places(known))
+        return DrawnStates(result.read(places), len(points), history, marks, chosen)
     every = [result] if isinstance(result, State) else result
     if not isinstance(every, Sequence) or not all(isinstance(state, State) for state in every):
         raise InputError("result", f"must be states or a result, not {checks.as_toml(result)}")
@@ -203,29 +208,6 @@ def drawn_places(
         places = sorted({*places, *marks})
     places = even_choice(places, most, marks)
     return places, [marks.get(place, "") for place in places], count
-
-
-def held_states(
-    held: Held,
-    states: StateChoice = None,
-    most: int = style.MAX_NAMED,
-    whole: bool = False,
-    extremes: Collection[tuple[str, Side]] = TRACTIONS,
-) -> DrawnStates:
-    """Return the states that a figure of a result draws. No others are read from its file.
-
-    Raises
-    ------
-    InputError
-        If there is no such state, or the file can't be read.
-    """
-    cycles = held.result.cycles
-
-    def marked() -> dict[int, str]:
-        return marked_places({each: held.extremes[each] for each in extremes if each in held.extremes})
-
-    places, marks, chosen = drawn_places(held.points, cycles, states, most, whole, marked)
-    return DrawnStates(held.read(places), len(held.points), cycles, marks, chosen)
 
 
 class Frame:
@@ -398,106 +380,97 @@ def _is_twin(one: State, other: State) -> bool:
     return pressure <= SAME * peak and shear <= SAME * one.most_friction * peak
 
 
-class InMemory:
-    """A result, a sequence of states of one problem and on one grid, one state, or a life of wear.
+Shown = Result | Sequence[State] | State | WearResult | Problem | Case
+"""What figures are made of."""
 
-    The states of a life are those over one cycle on each stored profile.
+
+class Subject:
+    """What a figure shows: a result, states, a life of wear, or a joint without states.
+
+    States are of one problem and on one grid. Those of a life are the states over one cycle on each stored profile.
+
+    Parameters
+    ----------
+    shown : Result, State, sequence of State, WearResult, Problem or Case
+    held : Held, optional
+        The stored result of a run, of which `shown` is the result without its states. Only those that a figure shows
+        are read.
+    progress : callable, optional
+        ``progress(done, total)`` follows figures that take long to compute.
+
+    Attributes
+    ----------
+    shown : Result, State, sequence of State, Problem or Case
+    life : WearResult or None
     """
 
-    progress: Callable[[float, float], None] | None = None
-
-    def __init__(self, result: Sequence[State] | State | WearResult) -> None:
-        self._life = result if isinstance(result, WearResult) else None
-        self._result = Result.of_life(result) if isinstance(result, WearResult) else result
+    def __init__(
+        self, shown: Shown, held: Held | None = None, progress: Callable[[float, float], None] | None = None
+    ) -> None:
+        self.life = shown if isinstance(shown, WearResult) else None
+        self.shown = Result.of_life(shown) if isinstance(shown, WearResult) else shown
+        self._held, self.progress = held, progress
 
     @property
     def source(self) -> str:
         """A key of :data:`fastpin.figures.kinds.SOURCES`."""
-        return "result" if self._life is None else "life"
+        return "case" if isinstance(self.shown, Problem | Case) else "result" if self.life is None else "life"
+
+    @property
+    def problem(self) -> Problem:
+        """The problem of a joint or a result."""
+        if not isinstance(self.shown, Problem | Case | Result):
+            raise InputError("joint", f"must be a Problem, Case or Result, not {checks.as_toml(self.shown)}")
+        return self.shown if isinstance(self.shown, Problem) else self.shown.problem
 
     @property
     def cycles(self) -> Sequence[Cycle]:
         """The cycles of the history."""
-        return self._result.cycles if isinstance(self._result, Result) else ()
+        return self.shown.cycles if isinstance(self.shown, Result) else ()
 
     def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
         """Return the states of a figure, see :func:`fastpin.figures.states.drawn_states`."""
-        return drawn_states(self._result, states, **how)
+        return drawn_states(self.shown if self._held is None else self._held, states, **how)  # type: ignore[arg-type]
 
     def result(self) -> Result:
-        """Return the result."""
-        return checks.instance("result", self._result, Result, "a Result")
+        """Return the result, perhaps without its states."""
+        return checks.instance("result", self.shown, Result, "a Result")
 
     def part(self, first: int, last: int) -> Result:
-        """Return the result."""
-        return self.result()
-
-    def whole(self) -> Result:
-        """Return the result."""
-        return self.result()
-
-    def beside(self, name: str) -> Any:
-        """Return None: a result in memory does not know the sections of its case, such as [fatigue]."""
-        return None
-
-    def wear(self) -> WearResult:
-        """Return the life of wear."""
-        return checks.instance("result", self._life, WearResult, "a WearResult")
-
-
-class InFile(InMemory):
-    """The stored result of a run. Only the states that a figure shows are read: its ``result()`` has none.
-
-    Attributes
-    ----------
-    progress : callable or None
-        ``progress(done, total)`` follows figures that take long to compute.
-    """
-
-    def __init__(self, path: Path, progress: Callable[[float, float], None] | None = None) -> None:
-        self._path, self._held, self.progress = path, HeldInFile(path), progress
-        super().__init__(self._held.result)
-
-    def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
-        """Return the states of a figure, see :func:`fastpin.figures.states.held_states`."""
-        return held_states(self._held, states, **how)
-
-    def part(self, first: int, last: int) -> Result:
-        """Return the result with the states from one corner to another only."""
-        return self._held.part(first, last)
+        """Return the result, perhaps with the states from one corner to another only."""
+        return self.result() if self._held is None else self._held.part(first, last)
 
     def whole(self) -> Result:
         """Return the result with all its states."""
-        return self._held.whole()
+        return self.result() if self._held is None else self._held.whole()
 
     def beside(self, name: str) -> Any:
-        """Return the section of its case with this name, such as "fatigue"; None if the case had none."""
-        return beside_of(stored_case(self._path)).get(name)
-
-    def wear(self) -> WearResult:
-        """Raise :class:`InputError`: there is no life of wear."""
-        return load_wear(self._path)
+        """Return the section of a stored case with this name, such as "fatigue"; None if it is not known."""
+        path = None if self._held is None else self._held.path
+        return None if path is None else beside_of(stored_case(path)).get(name)
 
 
-def problem_of(joint: Problem | Case | Result) -> Problem:
-    """Return the problem of a joint. Anything else raises :class:`InputError`."""
-    if not isinstance(joint, (Problem, Case, Result)):
-        raise InputError("joint", f"must be a Problem, Case or Result, not {checks.as_toml(joint)}")
-    return joint if isinstance(joint, Problem) else joint.problem
+def of_states(result: Sequence[State] | State) -> Subject:
+    """Return states, or a result, as a subject."""
+    return Subject(result)
 
 
-Subject = InMemory
-"""A result, or states, of which figures are made. States alone have no result."""
+def of_joint(joint: Problem | Case | Result) -> Subject:
+    """Return a joint, with its states or without, as a subject."""
+    return Subject(joint)
 
 
 def stored_subject(path: Path, progress: Callable[[float, float], None] | None = None) -> Subject:
-    """Return the result of a run, or the life of wear, in a file. The progress is that of :class:`InFile`."""
-    return InMemory(load_wear(path)) if holds_wear(path) else InFile(path, progress)
+    """Return the result of a run, or the life of wear, in a file. The progress is that of :class:`Subject`."""
+    if holds_wear(path):
+        return Subject(load_wear(path))
+    held = HeldInFile(path)
+    return Subject(held.result, held, progress)
 
 
 def with_stored_cycles(subject: Subject) -> WearResult:
     """Return the life of wear of a subject. Without a stored cycle raise :class:`InputError`."""
-    life = subject.wear()
+    life = checks.instance("result", subject.life, WearResult, "a WearResult")
     if not len(life):
         raise InputError("result", "has no stored cycle: the life of wear ended before its first one")
     return life

@@ -8,15 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from fastpin.assess.outputs import Curve, write_csv
+from fastpin.assess.outputs import Curve
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import DrawnStates, Frame, InMemory, Subject
-from fastpin.figures.style import caption, line, load_text, loads_by_change, short_load
+from fastpin.figures.states import DrawnStates, Frame, Subject, of_states
+from fastpin.figures.style import HATCH, caption, fill, line, load_text, loads_by_change, short_load
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Status
 from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
@@ -102,6 +101,14 @@ class MapColumn(NamedTuple):
     places: np.ndarray
 
 
+class ZoneMap(NamedTuple):
+    """The zones of a map; of more states than columns can be seen also the columns, and words on what one joins."""
+
+    boxes: list[ZoneBox]
+    columns: Sequence[MapColumn] = ()
+    words: str = ""
+
+
 def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
     """Draw a map of stick and slip: angle round the hole against load point.
 
@@ -114,51 +121,46 @@ def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
     first, last = (point_name(load_point(drawn[place])) for place in (0, -1))
     some = f"Only {len(drawn):,} of {drawn.total:,} states, load points {first} to {last}: stick"
     part = some if len(drawn) < drawn.total else "Stick"
-    notes = drawn.notes
-    if len(drawn) > MOST_COLUMNS:
+    notes, frame = drawn.notes, Frame(drawn)
+    if len(drawn) <= MOST_COLUMNS:
+        zones = ZoneMap(list(zone_boxes(drawn, frame)))
+    else:
         columns, words = long_columns(drawn)
+        zones = ZoneMap(list(extent_boxes(drawn, columns, frame)), columns, words)
         notes.append(f"the figure shows {len(drawn):,} states in {len(columns)} columns: {words}")
     return Plot(
-        lambda look: _draw(look, drawn),
-        lambda path: write_csv([Curve({}, _zone_columns(drawn))], path),
+        lambda look: _draw(look, drawn, zones, frame),
+        [Curve({}, _zone_columns(drawn[0].problem, zones))],
         f"Map of the zones that stick and slip, over angle and load point, from load point {first} to {last}.",
         f"{part} and slip over the angle round the hole and the load point. White is open.",
         notes,
     )
 
 
-plot_stick_slip = plotter("plot_stick_slip", stick_slip_plot, InMemory)
+plot_stick_slip = plotter("plot_stick_slip", stick_slip_plot, of_states)
 
 
-def _zone_columns(states: DrawnStates) -> dict[str, Any]:
+def _zone_columns(problem: Problem, zones: ZoneMap) -> dict[str, Any]:
     """Return the zones of a map, column by column of a CSV file."""
-    if len(states) <= MOST_COLUMNS:
-        boxes = list(zone_boxes(states))
-        return {
-            "load point": np.array([box.point for box in boxes]),
-            "start [deg]": np.array([box.start for box in boxes]),
-            "stop [deg]": np.array([box.stop for box in boxes]),
-            "status": np.array([Status(box.kind).name.lower().replace("_", " ") for box in boxes]),
-        }
-    joined = list(extent_boxes(states, long_columns(states)[0], Frame(states)))
-    return {
-        "load points after": np.array([box.left for box in joined]),
-        "to": np.array([box.right for box in joined]),
-        "start [deg]": np.array([box.start for box in joined]),
-        "stop [deg]": np.array([box.stop for box in joined]),
-        "slip": np.array([extent_look(states[0].problem, box.kind)[2] for box in joined]),
-    }
+    angle = {"start [deg]": np.array([box.start for box in zones.boxes])}
+    angle["stop [deg]"] = np.array([box.stop for box in zones.boxes])
+    if zones.columns:
+        left, right = (np.array([getattr(box, side) for box in zones.boxes]) for side in ("left", "right"))
+        words = np.array([extent_look(problem, box.kind)[2] for box in zones.boxes])
+        return {"load points after": left, "to": right, **angle, "slip": words}
+    points = np.array([box.point for box in zones.boxes])
+    names = np.array([Status(box.kind).name.lower().replace("_", " ") for box in zones.boxes])
+    return {"load point": points, **angle, "status": names}
 
 
-def zone_boxes(states: Sequence[State], frame: Frame | None = None) -> Iterator[ZoneBox]:
+def zone_boxes(states: Sequence[State], frame: Frame) -> Iterator[ZoneBox]:
     """Yield the zones of the states, degrees from the bottom. A column reaches halfway to the load points beside it."""
-    axis = Frame(states) if frame is None else frame
     points = np.array([load_point(state) for state in states])
     ends = column_ends(points)
     for state, point, left, right in zip(states, points.tolist(), ends[:-1].tolist(), ends[1:].tolist(), strict=True):
         zones = [(*zone, STICK) for zone in state.stick] + state.slip_zones
         for start, stop, status in zones:
-            for first, length in axis.place(start, stop):
+            for first, length in frame.place(start, stop):
                 yield ZoneBox(left, right, first, first + length, int(status), point)
 
 
@@ -178,30 +180,33 @@ def column_ends(points: np.ndarray) -> np.ndarray:
     return np.r_[2.0 * points[0] - middles[0], middles, 2.0 * points[-1] - middles[-1]]
 
 
-def _draw(look: Look, states: DrawnStates) -> Sheet:
+def _draw(look: Look, states: DrawnStates, zones: ZoneMap, frame: Frame) -> Sheet:
     """Draw the map, below the loads that change. More states than columns can be seen are joined in columns."""
-    problem, frame, is_long = states[0].problem, Frame(states), len(states) > MOST_COLUMNS
+    problem, (boxes, columns, words) = states[0].problem, zones
     common, differing = loads_by_change(states)
     sheet = look.sheet([1.0, 2.8] if differing else [2.8], extra=1.2, sharex=True)
-    panel, columns = sheet.axes[-1, 0], list[MapColumn]()
+    panel, look_of = sheet.axes[-1, 0], extent_look if columns else zone_look
     some = f" of {states.total:,}" if len(states) < states.total else ""
-    if is_long:
-        columns, words = long_columns(states)
-        boxes, look_of, open_words = list(extent_boxes(states, columns, frame)), extent_look, "open all the time"
+    if columns:
         panel.set_xlim(columns[0].left, columns[-1].right)
         note = f"; {len(states):,}{some} states; {words}"
     else:
-        boxes, look_of, open_words = list(zone_boxes(states, frame)), zone_look, "open"
         panel.set_xlim(*column_ends(np.array([load_point(state) for state in states]))[[0, -1]])
         note = f"; {len(states)}{some} states drawn" if some else ""
     present = [kind for kind in EXTENTS if any(box.kind == kind for box in boxes)]
     for kind in present:
-        _fill(panel, [box for box in boxes if box.kind == kind], look_of(problem, kind))
+        corners = [
+            [(box.left, box.start), (box.right, box.start), (box.right, box.stop), (box.left, box.stop)]
+            for box in boxes
+            if box.kind == kind
+        ]
+        fill(panel, corners, *look_of(problem, kind)[:2])
     if differing:
         _draw_loads(sheet.axes[0, 0], states, differing, columns)
         sheet.axes[0, 0].tick_params(labelbottom=False)
     handles: list[Patch | Line2D] = [zone_patch(look_of(problem, kind)) for kind in present]
-    handles.append(Patch(facecolor="white", edgecolor="0.5", linewidth=0.6, label=open_words))
+    is_open = "open all the time" if columns else "open"
+    handles.append(Patch(facecolor="white", edgecolor="0.5", linewidth=0.6, label=is_open))
     if len(states) <= MOST_MARKS and not problem.frictionless and _draw_marks(panel, boxes, frame.limits):
         handles.append(Line2D([], [], label="narrow slip zone", **(_MARK | {"marker": "^"})))
     frame.scale(panel, upright=True)
@@ -212,7 +217,7 @@ def _draw(look: Look, states: DrawnStates) -> Sheet:
     sheet.figure.align_ylabels(list(sheet.axes[:, 0]))
     loads = ",  ".join(load_text(states, 0, name) for name in common)
     sheet.head(look.title, loads, caption=f"{caption(problem, states)}{note}")
-    sheet.legend(handles, 3 if is_long else len(handles))
+    sheet.legend(handles, 3 if columns else len(handles))
     return sheet
 
 
@@ -231,21 +236,10 @@ def extent_look(problem: Problem, status: int) -> ZoneLook:
     return colour, hatch, EXTENTS.get(status, words).format(body=owner_of(problem, "pin"))
 
 
-def _fill(panel: Axes, boxes: Sequence[ZoneBox], look: ZoneLook) -> None:
-    """Fill rectangles with a colour and a hatch."""
-    colour, hatch, _ = look
-    corners = [
-        [(box.left, box.start), (box.right, box.start), (box.right, box.stop), (box.left, box.stop)] for box in boxes
-    ]
-    panel.add_collection(PolyCollection(corners, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False))
-    if hatch:
-        panel.add_collection(PolyCollection(corners, facecolor="none", edgecolor="0.25", linewidth=0.0, hatch=hatch))
-
-
 def zone_patch(look: ZoneLook) -> Patch:
     """Return the entry of the legend for a look of :func:`zone_look`."""
     colour, hatch, words = look
-    return Patch(facecolor=colour, edgecolor="0.25", linewidth=0.0, hatch=hatch, label=words)
+    return Patch(facecolor=colour, edgecolor=HATCH, linewidth=0.0, hatch=hatch, label=words)
 
 
 def _draw_marks(panel: Axes, boxes: Sequence[ZoneBox], limits: tuple[float, float]) -> bool:

@@ -1,10 +1,10 @@
-"""Figures of stresses: round hole and pin, below a place of the edge, and as a map of both bodies."""
+"""Figures of stresses: round hole and pin, along outlines, below a place of the edge, and as a map of both bodies."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import partial
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -14,16 +14,17 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import Normal, Stroke
 
-from fastpin.assess.outputs import Curve, write_csv
+from fastpin.assess.outputs import Curve
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import HOOP, DrawnStates, InMemory, Subject, name_states, state_lines
+from fastpin.figures.states import HOOP, DrawnStates, Subject, name_states, of_states, state_lines
 from fastpin.figures.style import caption, draw_zero, line, loads_text, point_text, points_text, quantity
 from fastpin.model.checks import choice, instance
 from fastpin.model.points import BODIES, Body, bodies_of, edge_body
 from fastpin.model.units import named_loads, units
-from fastpin.report.stress import FIELDS, UTILIZATION, depth_curves, field_curves, hoop_curves
+from fastpin.report.stress import FIELDS, UTILIZATION, depth_curves, field_curves, hoop_curves, outline_curves
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
+from fastpin.states.margins import part_of
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 
@@ -48,14 +49,14 @@ def hoop_plot(subject: Subject, states: StateChoice = None, body: str = "both") 
     seat = ", the seat of the bush" if "seat" in bodies_of(drawn[0].problem) else ""
     return Plot(
         lambda look: _draw_hoop(look, drawn, curves),
-        partial(write_csv, curves),
+        curves,
         f"Line charts of the hoop stress over the angle round the hole, at load points {points_text(drawn)}.",
         f"Hoop stress round the hole{seat} and the pin. Dots mark the largest value of each state.",
         drawn.notes,
     )
 
 
-plot_hoop_stress = plotter("plot_hoop_stress", hoop_plot, InMemory)
+plot_hoop_stress = plotter("plot_hoop_stress", hoop_plot, of_states)
 
 
 def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
@@ -104,6 +105,57 @@ def _dot(label: str, face: str) -> Line2D:
     return Line2D([], [], linestyle="none", marker="o", markersize=4.0, color="0.4", markerfacecolor=face, label=label)
 
 
+def outline_plot(subject: Subject, states: StateChoice = None) -> Plot:
+    """Draw the hoop stress along the outline, counter-clockwise, and then along the further holes.
+
+    A dot marks the largest value of each state. Tension is positive. A plate without an outline raises
+    :class:`InputError`. See :func:`fastpin.plot_tractions` for the `states`.
+    """
+    drawn = subject.states(states, extremes=(("peak_hoop_outline", "largest"),))
+    curves = outline_curves(drawn)
+    left_out = part_of(drawn[0].problem, "plate")
+    return Plot(
+        lambda look: _draw_outline(look, drawn, curves),
+        curves,
+        f"Line chart of the hoop stress along the outline of the plate, at load points {points_text(drawn)}.",
+        f"Hoop stress along the outline of the plate{f', {left_out}' if left_out else ''}. Dots mark the largest value "
+        "of each state.",
+        drawn.notes,
+    )
+
+
+plot_outline = plotter("plot_outline", outline_plot, of_states)
+
+
+def _draw_outline(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
+    sheet = look.sheet([2.6], extra=1.5)
+    panel, unit, edges = sheet.axes[0, 0], units(states[0].problem), curves[0]["edge"]
+    along, hoop = (next(name for name in curves[0].columns if name.startswith(word)) for word in ("along", "hoop"))
+    factor, label = unit["traction"].printed.scale([float(np.abs(curve[hoop]).max()) for curve in curves])
+    length, length_label = unit["length"].printed.scale([float(curves[0][along].max())])
+    sides = [list(group) for _, group in groupby(range(edges.size), lambda k: edges[k])]
+    for state, curve, style in zip(states, curves, state_lines(states), strict=True):
+        x, y = length * curve[along], factor * curve[hoop]
+        for side in sides:
+            panel.plot(x[side], y[side], **style)
+        found, peak = state.outline_hoop_stress(), state.outline_peak
+        top = int(np.argmin(np.hypot(found.x - peak.x, found.y - peak.y)))
+        panel.plot(x[top], y[top], "o", markersize=4.0, color=style["color"])
+    for side in sides:
+        start, end = (length * curves[0][along][k] for k in (side[0], side[-1]))
+        panel.axvline(start, color="0.8", linewidth=0.6, zorder=0)
+        panel.text(
+            0.5 * (start + end), 0.98, edges[side[0]], rotation=90.0, ha="center", va="top", fontsize=7.0, color="0.4",
+            transform=panel.get_xaxis_transform(), parse_math=False,
+        )  # fmt: skip
+    draw_zero(panel)
+    panel.set_xlabel(quantity("along the outline, counter-clockwise, then the further holes", length_label))
+    panel.set_ylabel(quantity("hoop stress", label))
+    dot = Line2D([], [], linestyle="none", marker="o", markersize=4.0, color="0.4", label="largest of each state")
+    name_states(sheet, states, [look.title], [dot])
+    return sheet
+
+
 def profile_plot(
     subject: Subject,
     states: StateChoice = None,
@@ -120,10 +172,10 @@ def profile_plot(
     """
     drawn = subject.states(states, extremes=HOOP[choice("body", body, BODIES)])
     curves = depth_curves(drawn, body, angle, depth)
-    return Plot(lambda look: _draw_profile(look, drawn, curves), partial(write_csv, curves), notes=drawn.notes)
+    return Plot(lambda look: _draw_profile(look, drawn, curves), curves, notes=drawn.notes)
 
 
-plot_stress_profile = plotter("plot_stress_profile", profile_plot, InMemory)
+plot_stress_profile = plotter("plot_stress_profile", profile_plot, of_states)
 
 
 def _draw_profile(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
@@ -152,9 +204,9 @@ def _draw_profile(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> S
     return sheet
 
 
-def last_state(state: State | Result) -> InMemory:
+def last_state(state: State | Result) -> Subject:
     """The state, or the last one of a result."""
-    return InMemory(state if isinstance(state, Result) else instance("state", state, State, "a State"))
+    return Subject(state if isinstance(state, Result) else instance("state", state, State, "a State"))
 
 
 def map_plot(
@@ -185,7 +237,7 @@ def map_plot(
     doubt = " The force acts at a point in the pin's centre: stress round it is no margin." if _has_point(state) else ""
     return Plot(
         lambda look: _draw_field(look, state, curves, component),
-        partial(write_csv, curves),
+        curves,
         f"Map of the {words} in {'plate' if component == UTILIZATION else 'pin and plate'} at {point}.",
         f"{words[0].upper()}{words[1:]} at {point}. The thick line is the contact, white where it slips.{doubt}",
         drawn.notes,

@@ -16,6 +16,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -135,6 +136,17 @@ def draw_grid(panel: Axes, axis: Any = "both") -> None:
     """Draw light lines behind the curves of a panel."""
     panel.grid(True, axis=axis, color="0.92", linewidth=0.6)
     panel.set_axisbelow(True)
+
+
+HATCH = "0.25"
+"""Grey of the hatches."""
+
+
+def fill(panel: Axes, polygons: Sequence[Any], colour: str, hatch: str) -> None:
+    """Fill polygons with a colour, and with a hatch if there is one."""
+    panel.add_collection(PolyCollection(polygons, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False))
+    if hatch:
+        panel.add_collection(PolyCollection(polygons, facecolor="none", edgecolor=HATCH, linewidth=0.0, hatch=hatch))
 
 
 def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:

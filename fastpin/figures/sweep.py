@@ -6,14 +6,13 @@ import math
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis as MatplotlibAxis
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
@@ -21,10 +20,10 @@ from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import Bbox
 
-from fastpin.assess.outputs import Curve, write_csv
+from fastpin.assess.outputs import Curve
 from fastpin.errors import InputError
 from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet, plotter
-from fastpin.figures.style import MAX_NAMED, Line, caption, line, quantity, shown_label, spread, wrapped
+from fastpin.figures.style import HATCH, MAX_NAMED, Line, caption, fill, line, quantity, shown_label, spread, wrapped
 from fastpin.model.checks import instances
 from fastpin.model.problem import Problem
 from fastpin.model.units import scaled
@@ -52,9 +51,6 @@ CLASS_LOOKS = (
     ("#7A5C3E", "ooo"),
 )
 """Colour and hatch of each class, in the order of their numbers. They differ in grey, or by the hatch."""
-
-HATCH = "0.25"
-"""Grey of the hatches."""
 
 LEVELS = 7
 """Most contour lines of a map."""
@@ -232,10 +228,7 @@ def draw_classes(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.ndarray,
             for j, k in np.argwhere(numbers == number)
         ]
         if cells:
-            fill: dict[str, Any] = {"facecolor": colour, "edgecolor": "none", "antialiased": False}
-            panel.add_collection(PolyCollection(cells, linewidth=0.0, **fill))
-        if cells and hatch:
-            panel.add_collection(PolyCollection(cells, facecolor="none", edgecolor=HATCH, linewidth=0.0, hatch=hatch))
+            fill(panel, cells, colour, hatch)
     panel.add_collection(LineCollection(class_borders(x, y, numbers), colors="black", linewidths=1.6))
     panel.set_xlim(x[0], x[-1])
     panel.set_ylim(y[0], y[-1])
@@ -512,7 +505,7 @@ def envelope_of(found: Sequence[Curve], problem: Problem | None = None, varied: 
     words = "bearing stress over the bypass stress at which the first ply fails"
     return Plot(
         lambda look: _draw_envelope(look, each, "" if problem is None else fixed_parameters(problem, varied)),
-        partial(write_csv, each),
+        each,
         f"Line chart of the {words}.",
         f"{words[0].upper()}{words[1:]}.",
         width=5.8,

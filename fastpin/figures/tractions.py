@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from fastpin.assess.outputs import Curve, write_csv
+from fastpin.assess.outputs import Curve
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.sketch import draw_sketch, load_ranges
-from fastpin.figures.states import DrawnStates, Frame, InMemory, Subject, name_states, state_lines
+from fastpin.figures.states import DrawnStates, Frame, Subject, name_states, of_states, state_lines
 from fastpin.figures.style import ANGLE, Line, is_bonded, point_text, points_text, quantity
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model import checks, points
@@ -66,7 +65,7 @@ def tractions_plot(subject: Subject, states: StateChoice = None, sketch: bool = 
     curves = traction_curves(drawn, checks.true_or_false("bars", bars))
     return Plot(
         lambda look: _draw(look, drawn, curves, sketch, bars),
-        partial(write_csv, curves),
+        curves,
         f"Line charts of contact pressure and shear traction over the angle round the hole, at load points "
         f"{points_text(drawn)}. Bars below show where each state sticks and slips.",
         "Pressure N and shear traction T on the pin, counter-clockwise positive; below, stick and slip of each state.",
@@ -74,7 +73,7 @@ def tractions_plot(subject: Subject, states: StateChoice = None, sketch: bool = 
     )
 
 
-plot_tractions = plotter("plot_tractions", tractions_plot, InMemory)
+plot_tractions = plotter("plot_tractions", tractions_plot, of_states)
 
 
 def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve], sketch: bool, bars: bool) -> Sheet:

@@ -17,15 +17,14 @@ from fastpin.assess.wear import wear_input
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
 from fastpin.figures.cycles import cycles_of
-from fastpin.figures.fatigue import crack_growth_of, fatigue_of, spectrum_of
-from fastpin.figures.history import gap_of, history_of
+from fastpin.figures.fatigue import crack_growth_of, fatigue_of
+from fastpin.figures.history import gap_plot, history_of
 from fastpin.figures.laminates import strength_of
 from fastpin.figures.load_cycle import STRAIGHT, area_doubt, loops_of, slip_of
-from fastpin.figures.outline import outline_plot
 from fastpin.figures.sketch import sketch_of
-from fastpin.figures.states import DrawnStates, InMemory
+from fastpin.figures.states import DrawnStates, Subject
 from fastpin.figures.stick_slip import stick_slip_plot
-from fastpin.figures.stress import hoop_plot, map_plot
+from fastpin.figures.stress import hoop_plot, map_plot, outline_plot
 from fastpin.figures.tractions import tractions_plot
 from fastpin.kernels.status import SLIP_POSITIVE
 from fastpin.model import angles, points, ties
@@ -154,7 +153,7 @@ def case(page: PageParts) -> PageSection:
     options = {name: value for name, value in found.options.keywords().items() if known or name in told}
     solver = [(name, as_toml(value), OPTIONS[name]["words"]) for name, value in options.items() if value is not None]
     parts = drawn_or_reason(lambda: page.album.figure(sketch_of(found)))
-    parts += [page.album.figure(gap_of(found))] if problem.profiles else []
+    parts += [page.album.figure(gap_plot(Subject(found)))] if problem.profiles else []
     facts = Facts("Options of the solver", solver, ("option", "value", "meaning"))
     return PageSection("case", "Case", [*parts, Facts("The problem", rows, ("subject", "in words")), facts])
 
@@ -282,7 +281,7 @@ def tractions(page: PageParts) -> PageSection:
     if not any(state.in_contact for state in page.source.drawn):
         why = "Pin and hole do not touch in the drawn states." if page.source.drawn else NO_STATE
         return PageSection("tractions", "Tractions", [Text(why, "missing")])
-    return PageSection("tractions", "Tractions", [page.album.figure(tractions_plot(InMemory(page.source.drawn)))])
+    return PageSection("tractions", "Tractions", [page.album.figure(tractions_plot(Subject(page.source.drawn)))])
 
 
 def zones(page: PageParts) -> PageSection:
@@ -296,7 +295,7 @@ def zones(page: PageParts) -> PageSection:
     columns = [(heads[k], units_[k], [row[k] for row in rows]) for k in range(len(heads))]
     parts: list[SectionPart] = [Table("Zones of contact, stick and slip", columns)]
     if len(page.source.mapped) > 1:
-        parts = [*drawn_or_reason(lambda: page.album.figure(stick_slip_plot(InMemory(page.source.mapped)))), *parts]
+        parts = [*drawn_or_reason(lambda: page.album.figure(stick_slip_plot(Subject(page.source.mapped)))), *parts]
     return PageSection("zones", "Stick and slip", parts)
 
 
@@ -323,9 +322,9 @@ def seat(page: PageParts) -> PageSection:
     words = "Here the bush is the pin, and its seat in the plate the hole: the motion is that of the bush over the "
     words += "plate. Work is that of the whole joint."
     parts: list[SectionPart] = [*(Text(sentence(line)) for line in _seat_lines(source)), Text(words)]
-    parts += drawn_or_reason(lambda: page.album.figure(tractions_plot(InMemory(drawn))))
+    parts += drawn_or_reason(lambda: page.album.figure(tractions_plot(Subject(drawn))))
     if len(mapped) > 1:
-        parts += drawn_or_reason(lambda: page.album.figure(stick_slip_plot(InMemory(mapped))))
+        parts += drawn_or_reason(lambda: page.album.figure(stick_slip_plot(Subject(mapped))))
     if source.cycle is not None:
         parts += slip_parts(page, LoadCycle(tuple(DrawnStates(source.cycle.states, 0).seats)))
     states, gaps = source.rows
@@ -390,14 +389,14 @@ def stresses(page: PageParts) -> PageSection:
     drawn, problem = page.source.drawn, page.source.case.problem
     if not drawn:
         return PageSection("stresses", "Stresses", [Text(NO_STATE, "missing")])
-    parts = drawn_or_reason(lambda: page.album.figure(hoop_plot(InMemory(drawn))))
+    parts = drawn_or_reason(lambda: page.album.figure(hoop_plot(Subject(drawn))))
     peaks = page.source.held.peaks
     if points.has_outline(problem):
-        parts += drawn_or_reason(lambda: page.album.figure(outline_plot(InMemory(drawn))))
+        parts += drawn_or_reason(lambda: page.album.figure(outline_plot(Subject(drawn))))
     parts += [Text(sentence(line)) for line in hoop_lines(problem, peaks)]
     name = "peak_pressure" if problem.surfaces.plate.is_rigid else "peak_hoop"
     largest = peaks[ties.top([extremes.READINGS[name].of(state) for state in peaks])]
-    parts += drawn_or_reason(lambda: page.album.figure(map_plot(InMemory(largest))))
+    parts += drawn_or_reason(lambda: page.album.figure(map_plot(Subject(largest))))
     return PageSection("stresses", "Stresses", parts)
 
 
@@ -406,7 +405,7 @@ def _assessed(page: PageParts, assessed: Assessed) -> list[SectionPart]:
     parts: list[SectionPart] = []
     for criterion in assessed.how.criteria if assessed.is_along_edges else ():
         found = [one for one in assessed.found if one.criterion == criterion]
-        parts += [page.album.figure(spectrum_of(found))] if found else []
+        parts += [page.album.figure(fatigue_of(found))] if found else []
     kind, lines = "missing" if assessed.reason else "", QUESTIONS["fatigue"].lines(assessed, page.source.over_yield)
     return [*parts, *(Text(sentence(line), kind) for line in lines)]
 
@@ -421,7 +420,7 @@ def fatigue(page: PageParts) -> PageSection:
     found = page.source.fatigue
     if page.source.spectrum:
         lines = [spectrum_line(each, page.source.over_yield) for each in page.source.spectrum]
-        figure = page.album.figure(spectrum_of(page.source.spectrum))
+        figure = page.album.figure(fatigue_of(page.source.spectrum))
         return PageSection("fatigue", "Fatigue", [figure, *(Text(sentence(each)) for each in lines)])
     if isinstance(found, str):
         return PageSection("fatigue", "Fatigue", [Text(found, "missing")])
@@ -453,7 +452,7 @@ def strength(page: PageParts) -> PageSection:
     found = page.source.answer("strength")
     if found is None or isinstance(found, str):
         return PageSection("strength", "Strength", [Text(found or NO_STATE, "missing")])
-    plot = strength_of(InMemory([found.state]).states(), found.how)
+    plot = strength_of(Subject([found.state]).states(), found.how)
     parts = [Text(sentence(line)) for line in QUESTIONS["strength"].lines(found, page.source.over_yield)]
     return PageSection("strength", "Strength", [*parts, page.album.figure(plot)])
 

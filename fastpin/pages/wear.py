@@ -12,7 +12,7 @@ from fastpin.assess.wear import DEBRIS, cycle_columns, cycle_lines, followed_wor
 from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import criterion_title
 from fastpin.figures.scar import damage_of, scar_plot, wear_plot
-from fastpin.figures.states import InMemory
+from fastpin.figures.states import Subject
 from fastpin.model import angles, points, ties
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
@@ -81,7 +81,7 @@ def numbers(page: PageParts) -> PageSection:
         return PageSection("wear", "Wear", [*parts, Text(NO_PROFILE, "missing")])
     lines = cycle_lines(life)
     columns, gaps = columns_at(cycle_columns(life), printed_rows(lines)), TableRows(lines, life.numbers).gaps
-    parts += [page.album.figure(wear_plot(InMemory(life))), Table("Stored cycles", columns, gaps)]
+    parts += [page.album.figure(wear_plot(Subject(life))), Table("Stored cycles", columns, gaps)]
     remarks = "Energy and pressure of a row are those over one cycle on its profile, without further wear. "
     remarks += "The last column counts the cycles that were really solved, those for the control of the error included."
     if gaps:
@@ -109,7 +109,7 @@ def profile(page: PageParts) -> PageSection:
         ("gone with the material", unit["energy"].text(last.removed, 4), "elastic energy of worn material"),
     ]
     parts: list[SectionPart] = [
-        page.album.figure(scar_plot(InMemory(life))),
+        page.album.figure(scar_plot(Subject(life))),
         Facts(f"Worn off after {cycles_text(last.cycle)}", rows, ("body", "volume", "largest depth", "at")),
         Facts("Energies", energies, ("energy", "value", "remark")),
         Text("Beside a worn stick zone the pressure has a peak that depends on the nodes. Depth and volume do not."),

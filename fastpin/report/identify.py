@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 from fastpin.assess import outputs
-from fastpin.assess.outputs import Curve, Output, aligned, write_csv
+from fastpin.assess.outputs import Curve, Output, aligned
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.units import units
 from fastpin.studies.identification import FittedValue, Identified
@@ -107,12 +106,12 @@ def document(found: Identified, title: str) -> dict[str, Any]:
     return outputs.whole_document(IDENTIFIED, found, {}, title=title)
 
 
-def write_loop(found: Identified, path: Path) -> None:
-    """Write the measured and the computed loop as CSV, a line for each sample."""
+def loop_curve(found: Identified) -> Curve:
+    """Return the measured and the computed loop, a row for each sample."""
     unit, loop = units(found.problem), found.loop
     columns = {}
     for name, measured, computed in zip(found.names, (loop.displacement, loop.force), found.computed, strict=True):
         each = unit[LOAD_KIND[name]]
         columns[f"{name} [{each.name}]"] = each.factor * measured
         columns[f"{name} computed [{each.name}]"] = each.factor * computed
-    write_csv([Curve({}, columns)], path)
+    return Curve({}, columns)

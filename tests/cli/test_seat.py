@@ -13,10 +13,11 @@ from fastpin.model.angles import from_bottom
 from fastpin.model.units import units
 from fastpin.report.states import bush_line, seat_lines
 from tests.support.commands import printed, refused, said
+from tests.support.drawing import OF_SOME_PLATES
 from tests.support.faults import fault_of
 from tests.support.seats import BONDED, LOADS, SLIPS, TEXT, sample_case, sample_seat, stored_sample
 
-NOT_OF_STATES = {"scar", "wear", "damage", "gap"} | {name for name, kind in KINDS.items() if kind.only}
+NOT_OF_STATES = {"scar", "wear", "damage", "gap"} | OF_SOME_PLATES
 """Kinds that need a life of wear, or have nothing to show of this joint."""
 
 

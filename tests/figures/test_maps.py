@@ -10,6 +10,7 @@ from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle, Wedg
 from fastpin import MATERIALS, Case, InputError, LoadHistory, Material, MaterialPair, Problem, figures
 from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.figures.sketch import ARROWS
+from fastpin.figures.states import Frame
 from fastpin.figures.stick_slip import BOTH_WAYS, LOOKS, MOST_COLUMNS, columns_of, zone_boxes
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.lugs.outline import Hole, PartLoad, rectangle
@@ -24,7 +25,7 @@ from tests.support.samples import PAIR, sample_result, with_values
 
 def test_the_map_has_a_box_for_each_zone_of_each_state():
     result = sample_result()
-    boxes = list(zone_boxes(result))
+    boxes = list(zone_boxes(result, Frame(result)))
     assert len(boxes) == 9
     for state in result:
         mine = [box for box in boxes if box.point == state.step + 1]
@@ -57,7 +58,7 @@ def test_states_without_contact_have_white_columns():
     result.states[0] = with_values(result[0], pressure=0.0, shear=0.0, status=2)
     panel = figures.plot_stick_slip(result).axes[-1]
     assert panel.get_xlim() == (0.5, 3.5)
-    assert {box.point for box in zone_boxes(result)} == {2.0, 3.0}
+    assert {box.point for box in zone_boxes(result, Frame(result))} == {2.0, 3.0}
 
 
 def test_the_axis_of_one_state_has_one_number():

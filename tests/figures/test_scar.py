@@ -11,7 +11,7 @@ import fastpin
 from fastpin import Grid, InputError
 from fastpin.figures.scar import NEAR, damage_of, life_caption, scar_plot, wear_plot
 from fastpin.figures.sheet import Look
-from fastpin.figures.states import InMemory
+from fastpin.figures.states import Subject
 from fastpin.figures.style import MAX_NAMED
 from fastpin.model import Profile
 from fastpin.wear_lives import WearResult
@@ -70,12 +70,12 @@ def test_a_scar_goes_down_on_the_profiles_of_the_cycles(life: WearResult) -> Non
 
 
 def test_of_many_cycles_some_are_drawn_evenly_over_the_depth(life: WearResult) -> None:
-    plot = scar_plot(InMemory(lengthened(life, 60)))
+    plot = scar_plot(Subject(lengthened(life, 60)))
     assert plot.notes == [f"{MAX_NAMED} of 60 stored cycles are drawn"]
     figure = Look().drawn(plot)
     assert legend_words(figure) == [f"{k * k:,}" for k in (0, 8, 17, 25, 34, 42, 51, 59)]
     assert f"{MAX_NAMED} of 60 stored cycles; largest depth of all" in heading(figure)
-    assert scar_plot(InMemory(life)).notes == []
+    assert scar_plot(Subject(life)).notes == []
 
 
 def test_one_body_alone_is_named() -> None:
@@ -174,5 +174,5 @@ def test_a_crack_is_marked() -> None:
 
 
 def test_words_for_readers_who_see_no_figure(life: WearResult) -> None:
-    assert "after 0, 2, 20, 60 cycles" in scar_plot(InMemory(life)).instead
-    assert wear_plot(InMemory(life)).instead.startswith("Line charts over 60 cycles of volume, depth")
+    assert "after 0, 2, 20, 60 cycles" in scar_plot(Subject(life)).instead
+    assert wear_plot(Subject(life)).instead.startswith("Line charts over 60 cycles of volume, depth")

@@ -14,7 +14,7 @@ import fastpin
 from fastpin.assess.outputs import MAX_ROWS
 from fastpin.bodies import Bushing
 from fastpin.errors import InputError, OutputError
-from fastpin.figures.states import InMemory
+from fastpin.figures.states import Subject
 from fastpin.figures.stick_slip import stick_slip_plot
 from fastpin.model import Laminate, Material, MaterialPair
 from fastpin.model.loads import LOAD, LOADS
@@ -165,7 +165,7 @@ def test_a_gap_may_be_the_last_row(tmp_path: Path) -> None:
 def test_a_map_holds_all_states_or_says_that_it_does_not(joined: int, words: str, undrawn: None, monkeypatch) -> None:
     monkeypatch.setattr("fastpin.pages.source.MOST_JOINED", joined)
     source = Source.of_result(sample_result([{"P": 1e6 + 100.0 * k} for k in range(70)], nodes=21))
-    picture = Album().figure(stick_slip_plot(InMemory(source.mapped)))
+    picture = Album().figure(stick_slip_plot(Subject(source.mapped)))
     assert picture.caption.startswith(f"{words} and slip over the angle")
 
 

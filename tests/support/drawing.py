@@ -23,6 +23,9 @@ from matplotlib.text import Text
 
 from fastpin.figures import style
 
+OF_SOME_PLATES = {"outline", "stiffness", "strength"}
+"""Kinds of figures of plates of any outline, and of laminates."""
+
 
 def outline_figures(patch: pytest.MonkeyPatch) -> None:
     """Save each figure as an outline: a small file of its kind with its words and a digest of its numbers."""

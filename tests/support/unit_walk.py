@@ -22,6 +22,7 @@ from fastpin.model.keys import converted
 from fastpin.model.unit_systems import SI
 from fastpin.model.units import in_other_units, measures_of
 from fastpin.studies import workers
+from tests.support.drawing import OF_SOME_PLATES
 from tests.support.plans import run_here
 
 T = 2.0**-7
@@ -141,8 +142,8 @@ report limits -o limits.html
 def plots(subject: str) -> list[str]:
     """The commands that draw every kind of figure of a result, or the kinds that only a life of wear has."""
     lines = []
-    for kind, (_, _, allowed, sources, only) in KINDS.items():
-        if not only and subject == ("a.h5" if "result" in sources else "life.h5"):
+    for kind, (_, _, allowed, sources) in KINDS.items():
+        if kind not in OF_SOME_PLATES and subject == ("a.h5" if "result" in sources else "life.h5"):
             name = f"{kind}.svg"
             states = "--states 2,3" if "states" in allowed and kind != "sketch" else ""
             lines.append(f"plot {subject} {kind} -o {name} {states} {f'--csv {kind}.csv' if 'csv' in allowed else ''}")
