@@ -1,12 +1,13 @@
-"""``fastpin joint``: the load shares and contacts of several pins in several plates."""
+"""``fastpin joint`` and ``show``: the load shares and contacts of several pins in several plates."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from functools import partial
+from typing import Any
 
-from fastpin import figures, joints, report
+from fastpin import figures, joints, report, storage
 from fastpin.assess import outputs
 from fastpin.cli import terminal
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
@@ -18,45 +19,86 @@ JUDGED = "margins, fatigue and crack"
 """Text of the progress bar after the solution."""
 
 
+MOST_IN_MEMORY = 10_000
+"""Most corners of a history without a file. Each state of ten pins takes half a megabyte."""
+
+
 def run(options: argparse.Namespace) -> int:
     """Solve a joint file and print, draw and write its result; or print a commented joint file."""
     if options.example:
         sys.stdout.write(joints.JOINT_EXAMPLE)
         return terminal.EXIT_OK
-    if options.file is None:
+    if options.file is None and options.resume is None:
         raise InputError("file", "the joint file is missing; start with: fastpin joint --example > joint.toml")
-    case = joints.read_joint(options.file)
-    terminal.check_outputs(
-        {"--plot": options.plot, "--shares": options.shares, "--json": options.json}, ("--plot", "--shares")
-    )
-    if options.at is not None:
-        whole_number("--at", options.at, 1, len(case.corners))
-        if options.plot is None:
-            raise InputError("--at", "chooses the load point of a figure: it needs --plot FILE")
-    nodes = case.nodes if options.nodes is None else options.nodes
-    code = terminal.EXIT_OK
+    for name in ("output", "nodes"):
+        if options.resume is not None and getattr(options, name) is not None:
+            raise InputError(terminal.flag(name), "is that of the file to go on with (--resume)")
+    if options.overwrite and options.output is None:
+        raise InputError("--overwrite", "needs --output FILE")
+    like = None if options.file is None else joints.read_joint(options.file)
+    case = storage.stored_joint(options.resume) if like is None else like
+    case = case if options.nodes is None else case._replace(nodes=options.nodes)
+    _check(options, len(case.corners), {"--output": options.output})
+    path = options.output or options.resume
+    if path is None and len(case.corners) > MOST_IN_MEMORY:
+        words = f"is needed: the history has {len(case.corners):,} corners, more than {MOST_IN_MEMORY:,}"
+        raise InputError("--output", words)
+    code, given = terminal.EXIT_OK, ["like", *(() if options.nodes is None else ("nodes",))]
     try:
-        with (
-            Bar(len(case.corners), LOAD_POINTS) as bar,
-            terminal.as_options(() if options.nodes is None else ("nodes",)),
-        ):
-            result = joints.solve_joint(
-                case.joint, case.corners, nodes=nodes, harmonics=case.harmonics, progress=progress_to(bar)
-            )
+        with Bar(len(case.corners), LOAD_POINTS) as bar, terminal.as_options(given):
+            progress = progress_to(bar)
+            if options.resume is not None:
+                result = storage.resume_joint(path, like, progress)
+            elif path is not None:
+                result = storage.record_joint(case, path, overwrite=options.overwrite, progress=progress)
+            else:
+                how: dict[str, Any] = {"nodes": case.nodes, "harmonics": case.harmonics, "progress": progress}
+                result = joints.solve_joint(case.joint, case.corners, **how)
     except (SolveError, Interrupted) as ended:
         code = terminal.EXIT_INTERRUPTED if isinstance(ended, Interrupted) else terminal.EXIT_FAILED
-        terminal.fail(str(ended) or "interrupted", code)
-        result = ended.result  # type: ignore[assignment]
-        if result is None or not len(result):
+        more = "" if path is None else f"; go on with: fastpin joint --resume {path}"
+        terminal.fail(f"{str(ended) or 'interrupted'}{more if isinstance(ended, Interrupted) else ''}", code)
+        if ended.result is None or not len(ended.result):
             return code
+        result = ended.result  # type: ignore[assignment]
+    return _write(case, result, options) or code
+
+
+def show(options: argparse.Namespace) -> int:
+    """Print and draw the stored result of a joint."""
+    for name in ("states", "cycles", "cycle_csv", "record"):
+        if getattr(options, name) is not None:
+            raise InputError(terminal.flag(name), "is for the result of one pin, not of a joint")
+    if options.interface != "pin":
+        raise InputError("--interface", "is for a bush that slips in its seat, not for a joint of several pins")
+    case, result = storage.stored_joint(options.output), storage.load_joint(options.output)
+    _check(options, len(case.corners), {})
+    if not len(result):
+        terminal.say("no state was reached")
+    return _write(case, result, options) if len(result) else terminal.EXIT_OK
+
+
+def _check(options: argparse.Namespace, corners: int, result: dict[str, Any]) -> None:
+    """Check before the work that all files can be written, and the load point of a figure."""
+    figure_files = {"--plot": options.plot, "--shares": options.shares}
+    terminal.check_outputs({**figure_files, "--json": options.json, **result}, tuple(figure_files), "--output")
+    if options.at is not None:
+        whole_number("--at", options.at, 1, corners)
+        if options.plot is None:
+            raise InputError("--at", "chooses the load point of a figure: it needs --plot FILE")
+
+
+def _write(case: joints.JointFile, result: joints.JointResult, options: argparse.Namespace) -> int:
+    """Write the files of a result, then print it."""
+    is_complete = len(result) == len(case.corners)
+    if not is_complete:
         terminal.say(f"note: {len(result)} of {len(case.corners)} load points were reached", file=sys.stderr)
     last = min(options.at or len(result), len(result))
     draws = {options.plot: partial(figures.plot_joint, state=last - 1), options.shares: figures.plot_shares}
     files = [(name, partial(draw, result, title=case.title)) for name, draw in draws.items()]
     with Bar(1.0, JUDGED) as bar:
-        judged = report.joints.judged(result, case.fatigue, not code, progress_to(bar), case.crack)
+        judged = report.joints.judged(result, case.fatigue, is_complete, progress_to(bar), case.crack)
     unit = report.joints.joint_units(result.joint)
     document = partial(outputs.whole_document, report.joints.JOINT, judged, unit, title=case.title)
     text = [*filter(None, [case.title]), *report.joints.describe(judged).split("\n")]
-    written = terminal.write_outputs(files, options.json, document, lambda: text)
-    return code or written
+    return terminal.write_outputs(files, options.json, document, lambda: text)

@@ -173,9 +173,10 @@ def add_stored_commands(commands: Any) -> None:
     _option(resume, "output", "FILE", "HDF5 file of the run (run -o FILE)", Path)
     _add_outputs(resume)
     show = _command(commands, "show", "run", "show", "print and draw a stored result")
-    _option(show, "output", "FILE", "HDF5 file (run or wear -o FILE); the run may still be going", Path)
+    _option(show, "output", "FILE", "HDF5 file (run, joint or wear -o FILE); the run may still be going", Path)
     _add_interface(show)
     _add_outputs(show)
+    _add_of_joint(show, "of a joint: ")
 
 
 def add_wear(commands: Any) -> None:
@@ -412,10 +413,18 @@ def add_joint(commands: Any) -> None:
     _option(joint, "file", None, "joint file (TOML): plates, pins and loads", Path, nargs="?")
     _switch(joint, "--example", "print a commented joint file")
     _option(joint, "--nodes", "N", "nodes of each contact (default: those of the file)", literal)
+    _option(joint, "-o --output", "FILE", "write each state to an HDF5 file as soon as it is solved", Path)
+    _switch(joint, "--overwrite", "with -o: replace a file that exists")
+    _option(joint, "--resume", "FILE", "go on with the HDF5 file of a joint that ended early", Path)
     _option(joint, "--plot", "FILE", "draw all holes at a load point (png, pdf, svg)", Path)
-    _option(joint, "--at", "N", "load point in --plot (default: the last)", literal)
-    _option(joint, "--shares", "FILE", "draw the force of each pin at all load points", Path)
+    _add_of_joint(joint)
     _add_json(joint, "write all states as JSON")
+
+
+def _add_of_joint(command: argparse.ArgumentParser, whose: str = "") -> None:
+    """Add the options of figures of a joint."""
+    _option(command, "--at", "N", f"{whose}load point in --plot (default: the last)", literal)
+    _option(command, "--shares", "FILE", f"{whose}draw the force of each pin at all load points", Path)
 
 
 def add_paper(commands: Any) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from fastpin import assess, casefile, figures, live, report, solver, storage
 from fastpin.assess.margins import margin_lines
-from fastpin.cli import terminal, wear
+from fastpin.cli import joint, terminal, wear
 from fastpin.cli.options import literal
 from fastpin.cli.plot import load_seat, seat_title
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
@@ -85,7 +85,13 @@ def resume(options: argparse.Namespace) -> int:
 
 
 def show(options: argparse.Namespace) -> int:
-    """Print and draw a stored result, or print a stored life of wear."""
+    """Print and draw a stored result of one pin or of a joint, or print a stored life of wear."""
+    if storage.holds_joint(options.output):
+        return joint.show(options)
+    terminal.check_outputs({"--shares": options.shares}, ("--shares",))
+    for name in ("at", "shares"):
+        if getattr(options, name) is not None:
+            raise InputError(terminal.flag(name), "is for the result of a joint of several pins")
     if storage.holds_wear(options.output):
         return wear.show(options)
     case = _stored_case(options)

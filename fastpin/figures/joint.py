@@ -162,14 +162,14 @@ def _length(joint: Joint) -> Unit:
 
 
 def _draw_shares(look: Look, result: JointResult) -> Sheet:
-    joint, points = result.joint, 1.0 + np.arange(len(result))
+    joint, states, points = result.joint, result.states.bare, 1.0 + np.arange(len(result))
     sheet = look.sheet([2.6])
     panel = sheet.axes[0, 0]
     forces = {
-        pin.name: [float(np.hypot(*state.force(pin.name, pin.plates[0]))) for state in result] for pin in joint.pins
+        pin.name: [float(np.hypot(*state.force(pin.name, pin.plates[0]))) for state in states] for pin in joint.pins
     }
     forces |= {
-        f"friction {surface}": [float(np.hypot(*state.faying[k].force)) for state in result]
+        f"friction {surface}": [float(np.hypot(*state.faying[k].force)) for state in states]
         for k, surface in enumerate(joint.faying)
     }
     factor, unit = joint_units(joint)["force"].scale([max(values) for values in forces.values()])

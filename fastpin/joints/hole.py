@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +14,9 @@ from fastpin.bodies.body import Harmonics, Remote, Rim
 from fastpin.bodies.compliance import Compliance, complex_coefficients, translation_rows
 from fastpin.bodies.walls import PlateWalls
 from fastpin.model.checks import set_fields
+
+ACTING = ("incoming", "others", "loads", "rubbed")
+"""Fields of a hole that differ from state to state."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -43,14 +46,24 @@ class HoleInPlate(Compliance):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name in ("incoming", "others", "loads", "rubbed"):
-            given = np.array(getattr(self, name), dtype=float)
-            given.setflags(write=False)
-            set_fields(self, **{name: given})
+        self._set_acting(**{name: getattr(self, name) for name in ACTING})
 
     def __reduce__(self) -> tuple[type[HoleInPlate], tuple[Any, ...]]:
         own = self.incoming, self.others, self.loads, self.pinned, self.rubbed
         return type(self), (*super().__reduce__()[1], *own)
+
+    def under(self, **acting: np.ndarray) -> HoleInPlate:
+        """The same hole with other ``incoming``, ``others``, ``loads`` and ``rubbed``. Both share the matrix."""
+        found = object.__new__(type(self))
+        set_fields(found, **{each.name: getattr(self, each.name) for each in fields(self)})
+        found._set_acting(**acting)
+        return found
+
+    def _set_acting(self, **acting: np.ndarray) -> None:
+        for name, values in acting.items():
+            given = np.array(values, dtype=float)
+            given.setflags(write=False)
+            set_fields(self, **{name: given})
 
     @cached_property
     def digest(self) -> str:

@@ -70,12 +70,12 @@ _KINDS: dict[str, Any] = {
 }
 """The kinds of the keys, apart from those of the loads."""
 
-MOST_CORNERS = 10_000
-"""Most corners of a load history. Each state of ten pins takes a megabyte."""
+MOST_CORNERS = 1_000_000
+"""Most corners of a load history."""
 
 
 class JointFile(NamedTuple):
-    """The content of a joint file.
+    """The content of a joint file: a joint, its load history, and what is asked of it.
 
     Attributes
     ----------
@@ -93,9 +93,9 @@ class JointFile(NamedTuple):
 
     joint: Joint
     corners: list[dict[str, float]]
-    title: str
-    nodes: int
-    harmonics: int | None
+    title: str = ""
+    nodes: int = 96
+    harmonics: int | None = None
     fatigue: FatigueAssessment | None = None
     crack: SectionCrack | None = None
 

@@ -143,6 +143,28 @@ class JointState:
         return {name: float(force @ whole) / size for name, force in found.items()}
 
 
+class JointStates(Sequence[JointState]):
+    """The states of a joint in memory. Those of a file are a subclass, which reads them when they are asked for."""
+
+    def __init__(self, states: Sequence[JointState]) -> None:
+        self._states = states
+
+    def __len__(self) -> int:
+        return len(self._states)
+
+    def __getitem__(self, place):  # type: ignore[no-untyped-def]
+        return self._states[place]
+
+    @property
+    def bare(self) -> Sequence[JointState]:
+        """The states, perhaps without their contacts."""
+        return self._states
+
+    def section(self, place: int) -> KeptStates:
+        """The contact of a pin in a plate at all states, of which there must be one."""
+        return KeptStates([state.contacts[place] for state in self._states])
+
+
 @dataclass(frozen=True, eq=False)
 class JointResult(Sequence[JointState]):
     """The states of a joint at the corners of a load history.
@@ -150,7 +172,7 @@ class JointResult(Sequence[JointState]):
     Attributes
     ----------
     joint : Joint
-    states : tuple of JointState
+    states : JointStates
     nodes : int
         Nodes of each contact, all round.
     harmonics : tuple of int
@@ -162,7 +184,7 @@ class JointResult(Sequence[JointState]):
     """
 
     joint: Joint
-    states: tuple[JointState, ...]
+    states: JointStates
     nodes: int
     harmonics: tuple[int, ...]
     snaps: int
@@ -194,7 +216,7 @@ class JointResult(Sequence[JointState]):
             If a name is unknown, or the plate is infinite and the whole of it is asked for.
         """
         place = self.joint.place(pin, plate)
-        states = [state.contacts[place] for state in self.states]
+        states = list(self.states.section(place)) if self.states else []
         if not true_or_false("whole", whole):
             return states
         lug, pinned = self.joint.lug(pin, plate)
@@ -207,7 +229,7 @@ class JointResult(Sequence[JointState]):
 
     def shares(self, plate: str) -> dict[str, np.ndarray]:
         """The share of each pin in the force on a plate at every state, by name; see :meth:`JointState.shares`."""
-        rows = [state.shares(plate) for state in self.states]
+        rows = [state.shares(plate) for state in self.states.bare]
         return {name: np.array([row[name] for row in rows]) for name in rows[0]} if rows else {}
 
     @cached_property
@@ -215,14 +237,14 @@ class JointResult(Sequence[JointState]):
         """The first corner at which each pin touches each plate, by both names; -1 where it never does at a corner."""
         found = {}
         for place, (pin, plate) in enumerate(self.joint.sections):
-            touching = [state.step for state in self.states if state.contacts[place].in_contact]
-            found[pin.name, plate.name] = touching[0] if touching else -1
+            contacts = self.states.section(place) if self.states else ()
+            found[pin.name, plate.name] = next((one.step for one in contacts if one.in_contact), -1)
         return found
 
     @property
     def _loads(self) -> np.ndarray:
         """Loads at the states, shape (states, loads)."""
-        return np.array([list(state.load.values()) for state in self.states])
+        return np.array([list(state.load.values()) for state in self.states.bare])
 
     @property
     def last_cycle(self) -> tuple[JointState, ...]:
@@ -230,8 +252,13 @@ class JointResult(Sequence[JointState]):
 
         A cycle is the shortest run of corners at the end of the history that repeats the loads of the corners before.
         """
-        length = _cycle_length(self._loads)
-        return self.states[-length - 1 :] if length else ()
+        return tuple(self.states[place] for place in self._cycle)
+
+    @property
+    def _cycle(self) -> range:
+        """The places of the states of the last cycle."""
+        length, size = _cycle_length(self._loads), len(self)
+        return range(size - length - 1 if length else size, size)
 
     def assessed_fatigue(
         self, how: FatigueAssessment | None = None, progress: Callable[[float, float], None] | None = None
@@ -260,7 +287,7 @@ class JointResult(Sequence[JointState]):
         how = FatigueAssessment() if how is None else instance("how", how, FatigueAssessment, "a FatigueAssessment")
         check_callable("progress", progress)
         check_fatigue(self.joint, how, self._loads)
-        states, known = self.states if how.over == "history" else self.last_cycle, _assessed_sections(self.joint, how)
+        places, known = range(len(self)) if how.over == "history" else self._cycle, _assessed_sections(self.joint, how)
         found = []
         for done, place in enumerate(known):
             pin, plate = self.joint.sections[place]
@@ -269,7 +296,7 @@ class JointResult(Sequence[JointState]):
                 if progress is not None:
                     progress(done + part / whole, len(known))
 
-            at_pin = assessed_fatigue([state.contacts[place] for state in states], how, tell)
+            at_pin = assessed_fatigue(self.states.section(place).read(places), how, tell)
             found += [SectionDamage(pin.name, plate.name, each) for each in at_pin]
         return sorted(found, key=lambda one: (how.criteria.index(one.found.criterion), -one.found.hot_spot.damage))
 
@@ -292,7 +319,7 @@ class JointResult(Sequence[JointState]):
         """
         instance("crack", crack, SectionCrack, "a SectionCrack")
         check_crack(self.joint, crack, len(self))
-        cycle, states = self.last_cycle, self.of(crack.pin, crack.plate, whole=True)
+        cycle, states = self._cycle, self.of(crack.pin, crack.plate, whole=True)
         return planned_growth(states[-len(cycle) :], crack.how, not cycle, progress)
 
     def margins(self, progress: Callable[[float, float], None] | None = None) -> list[SectionMargin]:
@@ -313,7 +340,7 @@ class JointResult(Sequence[JointState]):
         check_callable("progress", progress)
         found = []
         for place, (pin, plate) in enumerate(self.joint.sections if self.states else ()):
-            kept = KeptStates([state.contacts[place] for state in self.states])
+            kept = self.states.section(place)
             wanted = [PREFIX + owner for owner in yielding_owners(kept.problem)]
             rows = static_margins(kept.problem, find_extremes(kept, [(name, "largest") for name in wanted]), kept.read)
             found += [SectionMargin(pin.name, plate.name, row) for row in rows]

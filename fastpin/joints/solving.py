@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, Self
 
 import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.joints.faying import FayingSurface
+from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import MOVES, Joint, JointPlate, whole_name
 from fastpin.joints.path import follow, unloaded
-from fastpin.joints.result import JointResult, JointState
-from fastpin.joints.states import StateMaker
+from fastpin.joints.result import JointResult, JointState, JointStates
+from fastpin.joints.states import Since, StateMaker
 from fastpin.joints.system import JointLoads, Motion, PinSection, PinsSystem, build
 from fastpin.lugs.plates import harmonic_sizes
 from fastpin.lugs.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
@@ -23,6 +24,7 @@ from fastpin.model.angles import BOTTOM
 from fastpin.model.checks import as_toml, check_callable, instance, items, known_name, number, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
+from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.run import RunProgress
 from fastpin.solver.slip_tally import SlipTally
@@ -88,42 +90,161 @@ def solve_joint(
     Interrupted
         After Ctrl-C. It is a KeyboardInterrupt with the ``result`` so far.
     """
-    instance("joint", joint, Joint, "a Joint")
-    nodes = whole_number("nodes", nodes, LEAST_NODES, MOST_NODES)
-    if harmonics is not None:
-        harmonics = whole_number("harmonics", harmonics, 2, MOST_HARMONICS)
-    check_callable("progress", progress)
-    values, began = load_values(joint, corners), time.perf_counter()
-    states: list[JointState] = []
-    snaps, step = 0, 0
-    with deferred_interrupts() as caught, one_blas_thread():
+    task, kept = JointTask.of(joint, corners, nodes, harmonics, progress), StatesInMemory()
+    try:
+        task.follow(kept)
+    except (SolveError, Interrupted) as ended:
+        ended.result = task.result(kept)  # type: ignore[assignment]
+        raise
+    return task.result(kept)
 
-        def report(part: float) -> None:
-            if caught:
-                raise Interrupted
-            if progress is not None:
-                progress(step + part, len(values))
 
-        plates = [_plate_compliance(joint, plate, harmonics, report) for plate in joint.plates]
-        orders = tuple(plate.order for plate in plates)
-        system, unit = _joint_system(joint, plates, values, nodes)
-        maker, memory, now = StateMaker(joint, system, plates), TableauMemory(system), unloaded(system)
-        try:
-            if system.given.fit.any():
-                now, snaps = follow(system, now, np.r_[now.load[:-2], 1.0, 1.0], memory, lambda part: report(0.0))
-            for step, corner in enumerate(values):
-                load = np.r_[np.zeros(len(LOADS)), corner / unit, now.load[-2:]]
-                begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size))
-                now, more = follow(system, begun, load, memory, report)
-                snaps += more
-                states.append(maker.state(now, step, dict(zip(joint.load_names, corner.tolist(), strict=True))))
-                report(1.0)
-        except (SolveError, Interrupted) as ended:
-            if isinstance(ended, SolveError):
-                _say_where(ended, joint, values, step)
-            ended.result = JointResult(joint, tuple(states), nodes, orders, snaps, time.perf_counter() - began)  # type: ignore[assignment]
-            raise
-    return JointResult(joint, tuple(states), nodes, orders, snaps, time.perf_counter() - began)
+@dataclass(frozen=True, eq=False)
+class JointRestart:
+    """Everything from which a joint goes on at a corner, to the same bits.
+
+    Attributes
+    ----------
+    corner : int
+        Number of corners that were followed.
+    configuration : Configuration
+    since : Since
+    snaps : int
+        Times that a pin was released, or snapped to a new place.
+    seconds : float
+        Time of the solution.
+    """
+
+    corner: int
+    configuration: Configuration
+    since: Since
+    snaps: int
+    seconds: float
+
+
+class JointRecorder(Protocol):
+    """Takes the states of a joint while they are found."""
+
+    def begin(self, holes: Sequence[HoleInPlate]) -> None:
+        """Begin with the holes of all sections, without loads."""
+
+    def add(self, state: JointState) -> None:
+        """Take the next state."""
+
+    def corner_reached(self, restart: JointRestart) -> None:
+        """Take the place from which the joint goes on. What it holds changes with the next corner."""
+
+
+class StatesInMemory:
+    """The recorder of :func:`solve_joint`.
+
+    Attributes
+    ----------
+    states : list of JointState
+    orders : tuple of int
+        Highest harmonic of the hole of each section.
+    restart : JointRestart or None
+    """
+
+    def __init__(self) -> None:
+        self.states: list[JointState] = []
+        self.orders: tuple[int, ...] = ()
+        self.restart: JointRestart | None = None
+
+    def begin(self, holes: Sequence[HoleInPlate]) -> None:
+        """Keep the harmonics."""
+        self.orders = tuple(hole.order for hole in holes)
+
+    def add(self, state: JointState) -> None:
+        """Keep the state."""
+        self.states.append(state)
+
+    def corner_reached(self, restart: JointRestart) -> None:
+        """Keep the latest one."""
+        self.restart = restart
+
+
+@dataclass(frozen=True, eq=False)
+class JointTask:
+    """A joint under a load history, and how it is followed.
+
+    Attributes
+    ----------
+    joint : Joint
+    values : ndarray, shape (corners, loads)
+        Loads at the corners, in the order of ``joint.load_names``.
+    nodes : int
+    harmonics : int or None
+    progress : callable or None
+    """
+
+    joint: Joint
+    values: np.ndarray
+    nodes: int
+    harmonics: int | None
+    progress: RunProgress | None
+
+    @classmethod
+    def of(cls, joint: Joint, corners: Any, nodes: int, harmonics: int | None, progress: RunProgress | None) -> Self:
+        """The task of the arguments of :func:`solve_joint`, after their check."""
+        instance("joint", joint, Joint, "a Joint")
+        nodes = whole_number("nodes", nodes, LEAST_NODES, MOST_NODES)
+        if harmonics is not None:
+            harmonics = whole_number("harmonics", harmonics, 2, MOST_HARMONICS)
+        check_callable("progress", progress)
+        return cls(joint, load_values(joint, corners), nodes, harmonics, progress)
+
+    def result(self, kept: StatesInMemory) -> JointResult:
+        """The result in memory."""
+        of = {
+            whole_name(plate.name): order for (_, plate), order in zip(self.joint.sections, kept.orders, strict=False)
+        }
+        last = kept.restart
+        snaps, seconds = (0, 0.0) if last is None else (last.snaps, last.seconds)
+        orders = tuple(of.get(plate.name, 0) for plate in self.joint.plates)
+        return JointResult(self.joint, JointStates(kept.states), self.nodes, orders, snaps, seconds)
+
+    def follow(self, recorder: JointRecorder, start: JointRestart | None = None) -> None:
+        """Give a recorder all states, or the later ones of a restart.
+
+        Raises
+        ------
+        SolveError, Interrupted
+            See :func:`solve_joint`.
+        """
+        joint, values, began = self.joint, self.values, time.perf_counter()
+        first, snaps, before = (0, 0, 0.0) if start is None else (start.corner, start.snaps, start.seconds)
+        step = first
+        with deferred_interrupts() as caught, one_blas_thread():
+
+            def report(part: float) -> None:
+                if caught:
+                    raise Interrupted
+                if self.progress is not None:
+                    self.progress(step + part, len(values))
+
+            plates = [_plate_compliance(joint, plate, self.harmonics, report) for plate in joint.plates]
+            system, unit = _joint_system(joint, plates, values, self.nodes)
+            since = Since.start(len(system.sections), len(system.faying)) if start is None else start.since.copy()
+            maker, memory = StateMaker(joint, system, plates, since), TableauMemory(system)
+            recorder.begin(maker.holes)
+            now = unloaded(system) if start is None else start.configuration
+            try:
+                if start is None and system.given.fit.any():
+                    now, snaps = follow(system, now, np.r_[now.load[:-2], 1.0, 1.0], memory, lambda part: report(0.0))
+                for step in range(first, len(values)):
+                    load = np.r_[np.zeros(len(LOADS)), values[step] / unit, now.load[-2:]]
+                    begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size))
+                    now, more = follow(system, begun, load, memory, report)
+                    snaps += more
+                    acting = dict(zip(joint.load_names, values[step].tolist(), strict=True))
+                    recorder.add(maker.state(now, step, acting))
+                    seconds = before + time.perf_counter() - began
+                    recorder.corner_reached(JointRestart(step + 1, now, since, snaps, seconds))
+                    report(1.0)
+            except SolveError as error:
+                _say_where(error, joint, values, step)
+                raise
 
 
 def _say_where(error: SolveError, joint: Joint, values: np.ndarray, step: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from fastpin.joints.faying import NORMALS, rim_basis
 from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import Joint
 from fastpin.joints.result import FayingState, JointState
-from fastpin.joints.system import CENTRING, PinsSystem
+from fastpin.joints.system import CENTRING, PinSection, PinsSystem
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.lugs.several_holes import HolesCompliance
 from fastpin.model.loads import LOADS
@@ -26,6 +26,34 @@ ROUNDED = 1e-13
 """Entries of the compliance of a hole below this are rounding: those of a hole far from any other."""
 
 
+@dataclass(frozen=True, eq=False)
+class Since:
+    """What has happened to a joint since the start, beside its configuration.
+
+    Attributes
+    ----------
+    dissipated : ndarray, shape (sections,)
+        Energy that friction has dissipated in each contact, J/m.
+    rubbed : ndarray, shape (surfaces,)
+        Energy that friction has dissipated at each faying surface, J.
+    rest : ndarray, shape (sections, 2)
+        Where the pin first rested on each hole, dimensionless; NaN before.
+    """
+
+    dissipated: np.ndarray
+    rubbed: np.ndarray
+    rest: np.ndarray
+
+    @classmethod
+    def start(cls, sections: int, surfaces: int) -> Since:
+        """Nothing yet, for so many sections and faying surfaces."""
+        return cls(np.zeros(sections), np.zeros(surfaces), np.full((sections, 2), np.nan))
+
+    def copy(self) -> Since:
+        """A copy."""
+        return Since(self.dissipated.copy(), self.rubbed.copy(), self.rest.copy())
+
+
 class StateMaker:
     """Makes the states of one history, in order.
 
@@ -34,13 +62,18 @@ class StateMaker:
     joint : Joint
     system : PinsSystem
     plates : list of HolesCompliance
+    since : Since
+        It is changed by every state.
+
+    Attributes
+    ----------
+    holes : list of HoleInPlate
+        The hole of each section, without loads.
     """
 
-    def __init__(self, joint: Joint, system: PinsSystem, plates: list[HolesCompliance]) -> None:
-        self._joint, self._system, self._plates = joint, system, plates
-        self._dissipated = np.zeros(len(system.sections))  # J/m, of each contact
-        self._rubbed = np.zeros(len(system.faying))  # J, of each faying surface
-        self._rest: dict[int, np.ndarray] = {}  # where the pin first rested on each hole
+    def __init__(self, joint: Joint, system: PinsSystem, plates: list[HolesCompliance], since: Since) -> None:
+        self._joint, self._system, self._plates, self._since = joint, system, plates, since
+        self.holes = [self._hole(each) for each in system.sections]
 
     def state(self, now: Configuration, step: int, load: dict[str, float]) -> JointState:
         """The state of a configuration at a corner, under a `load` by name, SI.
@@ -73,9 +106,9 @@ class StateMaker:
         thick = self._joint.plates[0].thickness
         for place, (force, sides) in enumerate(zip(system.rubbed(now.tractions), system.sides, strict=True)):
             lost = float(now.slip_tally.sums[1, sides].sum()) * scales.force * scales.displacement * thick
-            self._rubbed[place] += lost
+            self._since.rubbed[place] += lost
             slip = 0.0 - (NORMALS @ now.slip[sides]) * scales.displacement
-            found.append(FayingState(force * scales.force * thick, slip, float(self._rubbed[place])))
+            found.append(FayingState(force * scales.force * thick, slip, float(self._since.rubbed[place])))
         return tuple(found)
 
     def _contact(
@@ -88,15 +121,16 @@ class StateMaker:
         status = now.status[nodes].copy()
         if problem.frictionless:
             status = np.where(status == OPEN, OPEN, SLIP_POSITIVE).astype(np.int8)
-        if (status != OPEN).any() and place not in self._rest:
+        first = self._since.rest[place]
+        if (status != OPEN).any() and np.isnan(first).any():
             way = math.hypot(x, y)
-            self._rest[place] = float(system.initial_gap[nodes].max()) / way * np.array([x, y]) if way else np.zeros(2)
-        rest = self._rest.get(place, np.zeros(2))
+            first[:] = float(system.initial_gap[nodes].max()) / way * np.array([x, y]) if way else 0.0
+        rest = np.zeros(2) if np.isnan(first).any() else first
         datum = (rest[1] * np.cos(grid.theta) - rest[0] * np.sin(grid.theta)) * scales.displacement
         tally: dict[str, Any] = {**now.slip_tally.part(np.arange(nodes.start, nodes.stop)).fields(scales)}
         for name in ("slip_lowest", "slip_highest"):
             tally[name] = tally[name] - datum
-        self._dissipated[place] += float(grid.weights @ tally["friction_energy"]) * problem.hole_radius
+        self._since.dissipated[place] += float(grid.weights @ tally["friction_energy"]) * problem.hole_radius
         load = dict.fromkeys(LOADS, 0.0)
         load["Q"], load["P"] = float(passed[0]) * scales.force, -float(passed[1]) * scales.force
         load["M"] = float(passed[2]) * scales.force * problem.hole_radius
@@ -105,19 +139,17 @@ class StateMaker:
             shear=now.shear[nodes] * scales.traction, gap=now.gap[nodes] * scales.displacement,
             slip=now.slip[nodes] * scales.displacement - datum, status=status, dx=float(x) * scales.displacement,
             dy=float(y) * scales.displacement, rotation=float(turned) * scales.rotation,
-            dissipation=float(self._dissipated[place]), work=math.nan, energy=math.nan, residuals=residuals,
+            dissipation=float(self._since.dissipated[place]), work=math.nan, energy=math.nan, residuals=residuals,
             problem=replace(problem, plate_body=self._body(now, place)), grid=grid, **tally,
         )  # fmt: skip
 
     def _body(self, now: Configuration, place: int) -> HoleInPlate:
         """The hole of a contact, with what the other pins and the loads of the plate do to its edge."""
         system, scales = self._system, self._system.scales
-        section = system.sections[place]
-        plate, problem = self._plates[section.plate], section.problem
-        matrix = plate.block(section.hole, section.hole).copy()
-        matrix[np.abs(matrix) < ROUNDED] = 0.0
-        loads, on_holes = np.zeros(len(COLUMNS)), np.zeros((plate.holes, len(matrix)))
-        of_slices = np.zeros(len(matrix))  # mean tractions of all slices here, less those of this one
+        section, hole_alone = system.sections[place], self.holes[place]
+        plate, size = self._plates[section.plate], len(hole_alone.matrix)
+        loads, on_holes = np.zeros(len(COLUMNS)), np.zeros((plate.holes, size))
+        of_slices = np.zeros(size)  # mean tractions of all slices here, less those of this one
         for other, nodes, integrals in zip(system.sections, system.nodes.parts, system.integrals, strict=True):
             own = float(other is section)  # the matrix of the hole knows its own tractions
             if felt := section.felt(other, plate.holes) - own:
@@ -126,21 +158,26 @@ class StateMaker:
         for surface, sides in zip(system.faying, system.sides, strict=True):
             for other, sign in ((system.sections[at], sign) for at, sign in surface.signs):
                 if other.plate == section.plate:
-                    on_holes[other.hole] += rim_basis(len(matrix), sign, other.thickness)[1] @ now.shear[sides]
-        incoming = matrix @ of_slices
+                    on_holes[other.hole] += rim_basis(size, sign, other.thickness)[1] @ now.shear[sides]
+        incoming = hole_alone.matrix @ of_slices
         for hole, coefficients in enumerate(on_holes):
             incoming += plate.block(section.hole, hole) @ coefficients
         for of, name, load in system.given.columns:
             if of == section.plate:
                 loads[COLUMNS.index(name)] = now.load[len(LOADS) + load]
                 incoming += plate.column(name, section.hole) * now.load[len(LOADS) + load]
-        pair, unit = problem.pair, scales.traction
+        unit, others = scales.traction, np.delete(on_holes, section.hole, axis=0)
+        return hole_alone.under(
+            incoming=incoming * unit, others=others * unit, loads=loads * unit, rubbed=on_holes[section.hole] * unit
+        )
+
+    def _hole(self, section: PinSection) -> HoleInPlate:
+        """The hole of a section, without loads."""
+        plate, problem = self._plates[section.plate], section.problem
+        matrix = plate.block(section.hole, section.hole).copy()
+        matrix[np.abs(matrix) < ROUNDED] = 0.0
         try:
-            return HoleInPlate(
-                pair.plate.nu, pair.plane, problem.hole_radius, matrix, incoming=incoming * unit,
-                others=np.delete(on_holes, section.hole, axis=0) * unit, loads=loads * unit,
-                rubbed=on_holes[section.hole] * unit,
-            )  # fmt: skip
+            return HoleInPlate(problem.pair.plate.nu, problem.pair.plane, problem.hole_radius, matrix)
         except InputError as error:
             raise InputError(
                 "harmonics", f"too few for {self._joint.plates[section.plate].name}: {error.reason}"

@@ -129,7 +129,7 @@ def forces_table(result: JointResult) -> str:
 
     The friction of each faying surface follows, with its sign: the force on the first one of both plates.
     """
-    joint, states = result.joint, result.states
+    joint, states = result.joint, result.states.bare
     unit = joint_units(joint)
     columns: list[Column] = [("load point", "", [str(state.step + 1) for state in states])]
     for name in joint.load_names:
@@ -248,23 +248,27 @@ def contact_row(result: JointResult, place: int) -> dict[str, Any]:
     never touched the hoop stress is that of the loads of the plate.
     """
     pin, plate = result.joint.sections[place]
-    contacts = [state.contacts[place] for state in result.states]
-    forces = [float(np.hypot(*state.forces[place])) for state in result.states]
-    peaks = [contact.peak_hoop_stress("plate") for contact in contacts]
+    forces = [float(np.hypot(*state.forces[place])) for state in result.states.bare]
+    peaks, pressures, slips, touched, lost = [], [], [], None, 0.0
+    for contact in result.states.section(place):
+        peaks.append(contact.peak_hoop_stress("plate"))
+        pressures.append(_pressure(contact))
+        slips.append(float(np.max(contact.slip_distance)))  # type: ignore[arg-type]
+        touched = contact.step + 1 if touched is None and contact.in_contact else touched
+        lost = contact.dissipation * plate.thickness
     hoop = ties.top([peak.value for peak in peaks])
-    touched = result.first_touches[pin.name, plate.name]
     return {
         "pin": pin.name,
         "plate": plate.name,
-        "touched": None if touched < 0 else touched + 1,
+        "touched": touched,
         "force": max(forces),
-        "pressure": max(_pressure(contact) for contact in contacts),
+        "pressure": max(pressures),
         "hoop": peaks[hoop].value,
         "hoop_angle": peaks[hoop].angle,
         "hoop_step": hoop + 1,
         "resolved": peaks[hoop].resolved,
-        "slip": max(float(np.max(contact.slip_distance)) for contact in contacts),  # type: ignore[arg-type]
-        "dissipation": contacts[-1].dissipation * plate.thickness,
+        "slip": max(slips),
+        "dissipation": lost,
     }
 
 
@@ -273,8 +277,8 @@ def faying_row(result: JointResult, place: int) -> dict[str, Any]:
 
     The friction in parts of its limit is 1 where the surface slips, and up to 1.02 between the sides of its polygon.
     """
-    surface = result.joint.faying[place]
-    forces = [float(np.hypot(*state.faying[place].force)) for state in result.states]
+    surface, states = result.joint.faying[place], result.states.bare
+    forces = [float(np.hypot(*state.faying[place].force)) for state in states]
     top = ties.top(forces)
     return {
         "pin": surface.pin,
@@ -282,8 +286,8 @@ def faying_row(result: JointResult, place: int) -> dict[str, Any]:
         "force": forces[top],
         "used": forces[top] / surface.clamp.limit,
         "step": top + 1,
-        "slip": max(float(np.hypot(*state.faying[place].slip)) for state in result.states),
-        "dissipation": result[-1].faying[place].dissipation,
+        "slip": max(float(np.hypot(*state.faying[place].slip)) for state in states),
+        "dissipation": states[-1].faying[place].dissipation,
     }
 
 
@@ -436,7 +440,8 @@ BODY = (*NAMES, *fatigue.DAMAGE, Output("over_yield", optional=True))
 def _margins(judged: Judged) -> list[dict[str, Any]]:
     """The margins, the smallest first."""
     rows = [each.margin for each in judged.margins]
-    problems = [judged.result[-1][each.pin, each.plate].problem for each in judged.margins]
+    joint, states = judged.result.joint, judged.result.states
+    problems = [states.section(joint.place(each.pin, each.plate)).problem for each in judged.margins]
     found = []
     for at, problem in zip(judged.margins, problems, strict=True):
         unit, is_least = units(problem)[at.margin.kind], at.margin is smallest_margin(rows)

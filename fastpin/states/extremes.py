@@ -134,6 +134,11 @@ class KeptStates:
         self.points = np.array([load_point(state) for state in states])
         self._states = states
 
+    def __iter__(self) -> Iterator[State]:
+        """Give all states, in order."""
+        for begin in range(0, self.points.size, AT_ONCE):
+            yield from self.read(range(begin, min(begin + AT_ONCE, self.points.size)))
+
     def blocks(self) -> Iterator[StateBlock]:
         """Give the nodal values of all states, in order."""
         for begin in range(0, len(self._states), AT_ONCE):

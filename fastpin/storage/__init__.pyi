@@ -4,6 +4,11 @@ from .export import to_xarray as to_xarray
 from .held_in_file import largest_residuals as largest_residuals
 from .held_in_file import marked_extremes as marked_extremes
 from .held_in_file import provenance as provenance
+from .joint_files import holds_joint as holds_joint
+from .joint_files import load_joint as load_joint
+from .joint_files import record_joint as record_joint
+from .joint_files import resume_joint as resume_joint
+from .joint_files import stored_joint as stored_joint
 from .journal import is_being_written as is_being_written
 from .layout import versions as versions
 from .recording import lacks_error_bars as lacks_error_bars

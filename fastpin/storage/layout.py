@@ -50,7 +50,9 @@ from fastpin.storage import hdf5
 from fastpin.storage.bodies import read_bodies, read_material, read_profiles, write_entries
 from fastpin.version import __version__
 
-FORMAT = "fastpin result"
+FORMAT, JOINT = "fastpin result", "fastpin joint"
+"""Formats of files: the result of one pin, and that of a joint of several pins; see joint_files.py."""
+
 FORMAT_VERSION = 2
 """Version of the format of files with a solid pin in an infinite plate."""
 
@@ -65,6 +67,12 @@ WITH_SEAT = 5
 
 WITH_LAMINATE = 6
 """Version with a plate that is a laminate, for the same reason."""
+
+OTHERWISE = {
+    FORMAT: "holds a joint of several pins; fastpin show, joint --resume and fastpin.storage.load_joint read it",
+    JOINT: "holds the result of one pin, not of a joint of several; fastpin show and fastpin.load read it",
+}
+"""What is wrong with a file of the other format, by the format that is needed."""
 
 # Each dict below maps a stored field to its kind of quantity: a key of fastpin.model.units.units, or "" for a plain
 # number. The other fields of State are written and read one by one. Error bars come from the states in ``/coarse``.
@@ -102,6 +110,12 @@ NUMBER_FIELDS = {
     "energy": "energy",
 }
 """Kind of quantity of each field of a state with one number."""
+
+OF_WHOLE = ("work", "energy")
+"""Numbers that belong to a whole joint: the states of one pin in one plate lack them."""
+
+HOLE_FIELDS = ("incoming", "edge", "rubbed", "acting")
+"""Arrays of a pin in one plate, Pa, with what acts on its hole and plate beside the pin; see joint_files.py."""
 
 FIELD_KINDS = {**NODE_FIELDS, **BORDER_FIELDS, **SLIP_FIELDS, **NUMBER_FIELDS}
 """Kind of quantity of each array of node values or numbers in ``/states``."""
@@ -144,10 +158,15 @@ def _node_fields(has_slip: bool, has_borders: bool = True) -> dict[str, str]:
     return NODE_FIELDS | (BORDER_FIELDS if has_borders else {}) | (SLIP_FIELDS if has_slip else {})
 
 
+def number_fields(group: h5py.Group) -> list[str]:
+    """Return the names of the fields with one number that ``/states`` has, ``group``, also of one pin in a plate."""
+    return [name for name in NUMBER_FIELDS if name not in OF_WHOLE or HOLE_FIELDS[0] not in group]
+
+
 def state_rows(group: h5py.Group) -> tuple[str, ...]:
     """Return the names of the arrays of ``/states``, ``group``, with one row for each state."""
     seat = [f"{SEATED[1]}{name}" for name in (*node_fields(group), *SEAT_NUMBERS)] if "seat" in group else []
-    return (*node_fields(group), *NUMBER_FIELDS, "loads", "residuals", *seat)
+    return (*node_fields(group), *number_fields(group), "loads", "residuals", *seat)
 
 
 # -- parts of fixed size: problem, history, grid, options, statistics ---------------------------------------
@@ -159,23 +178,23 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     `options` are the attributes of ``/solver``; None leaves an option out. The arrays of states and cycles begin
     without rows.
     """
-    file.attrs["format"] = FORMAT
     with_bodies = WITH_BODIES if problem.has_bodies else FORMAT_VERSION
     with_profiles = WITH_PROFILES if problem.profiles else with_bodies
     with_seat = with_profiles if problem.seat is None else WITH_SEAT
-    file.attrs["format_version"] = with_seat if problem.pair.plate.is_isotropic else WITH_LAMINATE
-    file.attrs["complete"] = False
-    file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
-    file.attrs["platform"] = platform.platform()
-    file.attrs["host"] = platform.node()
-    for name, version in versions().items():
-        file.attrs[f"version_{name}"] = version
+    write_origin(file, FORMAT, with_seat if problem.pair.plate.is_isotropic else WITH_LAMINATE)
     _write_problem(file.create_group("problem"), problem)
     _write_history(file.create_group("history"), problem, history)
     solver = file.create_group("solver")
     solver.attrs.update({name: value for name, value in options.items() if value is not None})
     solver.create_group("statistics")
     write_grid(file, problem, history, grid, _node_fields(has_slip=bool(options.get("slip_sums"))))
+
+
+def write_origin(file: h5py.File, form: str, version: int) -> None:
+    """Write the format of an unfinished result, and where it was made."""
+    made = {"created": datetime.now(UTC).isoformat(timespec="seconds"), "platform": platform.platform()}
+    file.attrs.update(format=form, format_version=version, complete=False, **made, host=platform.node())
+    file.attrs.update({f"version_{name}": version for name, version in versions().items()})
 
 
 def options_of(result: Result) -> dict[str, Any]:
@@ -190,10 +209,10 @@ def write_grid(file: h5py.Group, problem: Problem, history: LoadHistory, grid: G
     `fields` are the kinds of the fields with node values, as in :func:`node_fields_of`.
     """
     file.create_group("grid").attrs["closed"] = grid.closed
-    _make_states(file, problem, grid, fields)
+    make_states(file, problem, grid, fields)
     cycles, unit = file.create_group("cycles"), units_per_thickness(problem)
     for name, kind in CYCLE_KINDS.items() if history.longest_cycle else ():
-        _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
+        growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
 
 
 @functools.cache
@@ -316,12 +335,12 @@ def _dtype(name: str) -> type:
     return bool if name == "solved" else float
 
 
-def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, unit: str | list[str]) -> h5py.Dataset:
+def growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, unit: str | list[str]) -> h5py.Dataset:
     """Create an array that grows by rows.
 
     Each row of node values is a chunk, compressed, and never written again.
     """
-    nodes = name in NODE_FIELDS or name in BORDER_FIELDS or name in SLIP_FIELDS
+    nodes = name in NODE_FIELDS or name in BORDER_FIELDS or name in SLIP_FIELDS or name in HOLE_FIELDS
     chunks = (1 if nodes else 128, *shape)
     dataset = group.create_dataset(
         name, (0, *shape), maxshape=(None, *shape), chunks=chunks, dtype=dtype, **(_PACKED if nodes else {})
@@ -330,11 +349,14 @@ def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, 
     return dataset
 
 
-def _make_states(file: h5py.File, problem: Problem, grid: Grid, fields: Mapping[str, str]) -> None:
-    """Create the arrays of ``/states`` without rows. `fields` are the fields with node values, with their kinds."""
+def make_states(file: h5py.Group, problem: Problem, grid: Grid, fields: Mapping[str, str], hole: int = 0) -> None:
+    """Create the arrays of ``/states`` without rows. `fields` are the fields with node values, with their kinds.
+
+    `hole` is the number of coefficients of the hole of one pin in one plate of a joint.
+    """
     group, unit = file.create_group("states"), units_per_thickness(problem)
     scales = {
-        "state": _growing(group, "state", (), np.int64, ""),
+        "state": growing(group, "state", (), np.int64, ""),
         "theta": group.create_dataset("theta", data=grid.theta),
         "load_name": group.create_dataset("load_name", data=list(LOADS), dtype=h5py.string_dtype()),
         "residual_name": group.create_dataset("residual_name", data=list(RESIDUALS), dtype=h5py.string_dtype()),
@@ -344,16 +366,18 @@ def _make_states(file: h5py.File, problem: Problem, grid: Grid, fields: Mapping[
     for name, scale in scales.items():
         scale.make_scale(name)
     arrays = [(name, kind, "theta", grid.size) for name, kind in fields.items()]
-    arrays += [(name, kind, "", 0) for name, kind in NUMBER_FIELDS.items()]
+    for name in HOLE_FIELDS if hole else ():
+        growing(group, name, (3 if name == "acting" else hole,), float, "Pa")
+    arrays += [(name, NUMBER_FIELDS[name], "", 0) for name in number_fields(group)]
     for name, kind, dimension, size in arrays:
-        dataset = _growing(group, name, (size,) if dimension else (), _dtype(name), unit.get(kind, ""))
+        dataset = growing(group, name, (size,) if dimension else (), _dtype(name), unit.get(kind, ""))
         dataset.dims[0].attach_scale(scales["state"])
         if dimension:
             dataset.dims[1].attach_scale(scales[dimension])
     if problem.seat is not None:
         _make_seat(group, problem.seat, seat_grid(problem, grid), fields)
-    loads = _growing(group, "loads", (len(LOADS),), float, load_units(problem))
-    residuals = _growing(group, "residuals", (len(RESIDUALS),), float, "")
+    loads = growing(group, "loads", (len(LOADS),), float, load_units(problem))
+    residuals = growing(group, "residuals", (len(RESIDUALS),), float, "")
     for dataset, dimension in ((loads, "load_name"), (residuals, "residual_name")):
         dataset.dims[0].attach_scale(scales["state"])
         dataset.dims[1].attach_scale(scales[dimension])
@@ -366,11 +390,11 @@ def _make_seat(states: h5py.Group, problem: Problem, grid: Grid, fields: Mapping
     theta.attrs["unit"] = "rad"
     theta.make_scale("seat_theta")
     for name, kind in fields.items():
-        dataset = _growing(group, name, (grid.size,), _dtype(name), unit.get(kind, ""))
+        dataset = growing(group, name, (grid.size,), _dtype(name), unit.get(kind, ""))
         dataset.dims[0].attach_scale(states["state"])
         dataset.dims[1].attach_scale(theta)
     for name in SEAT_NUMBERS:
-        _growing(group, name, (), float, unit[NUMBER_FIELDS[name]]).dims[0].attach_scale(states["state"])
+        growing(group, name, (), float, unit[NUMBER_FIELDS[name]]).dims[0].attach_scale(states["state"])
 
 
 def load_units(problem: Problem) -> list[str]:
@@ -478,7 +502,7 @@ def check_states(file: h5py.File, nodes: int) -> None:
     group = file["states"]
     for name in node_fields(group):
         hdf5.dataset_of(group, name, _dtype(name), (nodes,))
-    for name in NUMBER_FIELDS:
+    for name in number_fields(group):
         hdf5.dataset_of(group, name, _dtype(name), ())
     if "seat" in group:
         around = (len(hdf5.dataset_of(group["seat"], "theta", float, ())),)
@@ -528,12 +552,15 @@ def read_cycles(file: h5py.File) -> list[Cycle]:
     return [Cycle(*values) for values in zip(*(rows[name].tolist() for name in CYCLE_KINDS), strict=True)]
 
 
-def check_format(file: h5py.File, path: str) -> None:
-    """Raise :class:`InputError` if a file is no result, or has another version of the format."""
-    if file.attrs.get("format") != FORMAT:
+def check_format(file: h5py.File, path: str, form: str | None = FORMAT) -> None:
+    """Raise :class:`InputError` if a file is no result of a `form`, or has another version of it. None is any form."""
+    stored = file.attrs.get("format")
+    if stored not in (FORMAT, JOINT):
         raise InputError(path, "is an HDF5 file, but not a result of fastpin")
-    versions = (FORMAT_VERSION, WITH_BODIES, WITH_PROFILES, WITH_SEAT, WITH_LAMINATE)
-    if file.attrs.get("format_version") not in versions:
+    if form is not None and stored != form:
+        raise InputError(path, OTHERWISE[form])
+    versions = {FORMAT: (FORMAT_VERSION, WITH_BODIES, WITH_PROFILES, WITH_SEAT, WITH_LAMINATE), JOINT: (1,)}
+    if file.attrs.get("format_version") not in versions[stored]:
         made_by = file.attrs.get("version_fastpin")
         origin = "" if made_by is None else f"; it was written by fastpin {made_by}"
         raise InputError(path, f"has a format that this version of fastpin can't read{origin}")

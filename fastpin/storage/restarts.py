@@ -21,7 +21,7 @@ LEAST_FORCE = 1e-145
 """Least reference force in a file, N/m; the largest is its inverse. The limits of units and loads imply it."""
 
 # Sums begin anew at a corner. Marks have arrays of another form.
-_ARRAYS = [
+ARRAYS = [
     field.name
     for field in dataclasses.fields(Configuration)
     if field.name not in ("dissipation", "work", "seat_dissipation", "slip_tally", *MARKS)
@@ -58,7 +58,7 @@ def write_restart(group: h5py.Group, restart: Restart) -> None:
         [(*key, index_of(mark.configuration), mark.corner, mark.number) for key, mark in marks], dtype=np.int64
     ).reshape(-1, 5)
     group["marks_dissipation"] = np.array([mark.dissipation for _, mark in marks])
-    for name in _ARRAYS:
+    for name in ARRAYS:
         group[f"configurations/{name}"] = np.array([getattr(item, name) for item in configurations])
     for place, marks_field in enumerate(MARKS[: restart.configuration.motion.size // 3]):
         parts = [getattr(item, marks_field).arrays(item.status.size) for item in configurations]
@@ -81,7 +81,7 @@ def read_restart(group: h5py.Group, nodes: int) -> Restart:
     borders = [f"{before}{name}" for before in seated for name in BORDER_FIELDS]
     arrays = {
         name: _read_configurations(group["configurations"], name, nodes, 3 * len(seated))
-        for name in (*_ARRAYS, *borders)
+        for name in (*ARRAYS, *borders)
     }
     size = len(arrays["load"])
     if any(len(array) != size for array in arrays.values()):
@@ -92,7 +92,7 @@ def read_restart(group: h5py.Group, nodes: int) -> Restart:
         check_old_borders(f"configurations/{before}".rstrip("/"), *pairs)
         for marks_of, *pair in zip(all_marks, *pairs, strict=True):
             marks_of[field] = Marks.stored(*pair)
-    configurations = [Configuration(**{name: arrays[name][k] for name in _ARRAYS}, **all_marks[k]) for k in range(size)]
+    configurations = [Configuration(**{name: arrays[name][k] for name in ARRAYS}, **all_marks[k]) for k in range(size)]
     met, marks = (dataset_of(group, name, np.int64, (5,))[()] for name in ("met", "marks"))
     dissipations = dataset_of(group, "marks_dissipation", float, ())[()]
     check_between("met", met[:, 0], 0, size - 1)
@@ -145,15 +145,19 @@ def _read_configurations(group: h5py.Group, name: str, nodes: int, motions: int)
     if name in BORDER_FIELDS and name not in group:  # a file of an earlier version
         value, dtype = (0, np.int8) if name == "old_borders" else (np.nan, float)
         return np.full((len(group["status"]), nodes), value, dtype=dtype)
-    if name == "load":
-        array = all_loads(dataset_of(group, name, float)[()], 0.0)
-        size = len(loads.LOADS)
-    else:
-        dtype = np.int8 if name.removeprefix(SEATED[1]) in SMALL_NUMBERS else float
-        array = dataset_of(group, name, dtype, (size,))[()]
-    label = f"configurations/{name}"
-    if array.shape[1:] != (size,):
-        raise ValueError(f"{label} has the shape {array.shape}")
+    if name != "load":
+        return read_array(group, name, size)
+    array = all_loads(dataset_of(group, name, float)[()], 0.0)
+    if array.shape[1:] != (len(loads.LOADS),):
+        raise ValueError(f"configurations/load has the shape {array.shape}")
+    check_finite("configurations/load", array)
+    return array
+
+
+def read_array(group: h5py.Group, name: str, size: int) -> np.ndarray:
+    """Read and check one array of configurations, shape (configurations, size)."""
+    dtype, label = np.int8 if name.removeprefix(SEATED[1]) in SMALL_NUMBERS else float, f"configurations/{name}"
+    array: np.ndarray = dataset_of(group, name, dtype, (size,))[()]
     if name == "status":
         check_between(label, array, *STATUS_LIMITS)
     elif name not in ("origin", "old_places", "seat/old_places"):  # The origin is NaN before the pin has come to rest.

@@ -270,7 +270,7 @@ def _without_gaps(states: list[State], places: Sequence[int]) -> list[State]:
 def is_unfinished(path: Path) -> bool:
     """Whether a file holds an unfinished run."""
     try:
-        with open_result(path) as file:
+        with open_result(path, form=None) as file:
             return "run" in file.attrs and not file.attrs.get("complete", True)
     except InputError:
         return False
@@ -302,11 +302,11 @@ def places_between(path: str | Path, first: int, last: int) -> slice:
 
 
 @contextmanager
-def open_result(path: Path, *arguments: str) -> Iterator[Any]:
+def open_result(path: Path, *arguments: str, form: str | None = layout.FORMAT) -> Iterator[Any]:
     """Open a result for reading, as its last transaction left it.
 
     A result in the index of a sweep has the path of a file that is not there, see :func:`packed.packed_result`.
-    `arguments` are names in errors of the block that don't come from the file.
+    `arguments` are names in errors of the block that don't come from the file. `form` is the format; None is any.
 
     Raises
     ------
@@ -322,7 +322,7 @@ def open_result(path: Path, *arguments: str) -> Iterator[Any]:
     note_input(path)
     with journal.open_h5(path) as h5, reading(path, *arguments):
         stored = hdf5.Group(h5)
-        layout.check_format(stored, str(path))
+        layout.check_format(stored, str(path), form)
         yield stored
 
 

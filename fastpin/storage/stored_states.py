@@ -94,7 +94,8 @@ def _states_of(
     seats: Sequence[State | None],
 ) -> list[State]:  # fmt: skip
     """The states of pin or seat from their checked rows. `common` are more fields of each, `where` problem and grid."""
-    for name in (*fields, *layout.NUMBER_FIELDS):
+    numbers = [name for name in layout.NUMBER_FIELDS if name in rows]
+    for name in (*fields, *numbers):
         if name not in layout.EXTREMES:
             check_finite(f"{label}/{name}", rows[name])
     if layout.EXTREMES[0] in rows:
@@ -110,28 +111,43 @@ def _states_of(
         for array in per_node.values():
             array.setflags(write=False)
         marks = Marks.stored(rows["old_borders"][k], rows["old_places"][k]) if "old_borders" in rows else None
-        numbers = {name: rows[name][k].item() for name in layout.NUMBER_FIELDS}
+        given = dict.fromkeys(layout.OF_WHOLE, math.nan) | {name: rows[name][k].item() for name in numbers}
         states.append(
-            State(**per_node, **numbers, **each, theta=grid.theta, problem=problem, grid=grid, marks=marks, seat=seat)
+            State(**per_node, **given, **each, theta=grid.theta, problem=problem, grid=grid, marks=marks, seat=seat)
         )
     return states
 
 
 class StoredStates(KeptStates):
-    """The states of an open file."""
+    """The states of an open file.
 
-    def __init__(self, file: h5py.File) -> None:
-        self.problem, self.grid, self._file = layout.read_problem(file), layout.read_grid(file), file
-        layout.check_states(file, self.grid.size)
-        self._corners = len(layout.read_history(file))
+    Parameters
+    ----------
+    file : h5py.Group
+        Also a group of a file with its states in ``states``.
+    problem : Problem
+    grid : Grid
+    corners : int
+        Corners of the history.
+    """
+
+    def __init__(self, file: h5py.Group, problem: Problem, grid: Grid, corners: int) -> None:
+        self.problem, self.grid, self._file, self._corners = problem, grid, file, corners
+        layout.check_states(file, grid.size)
         rows = layout.read_rows(file["states"], ("step", "fraction"), slice(None))
         self.points = rows["step"] + rows["fraction"]
+
+    @classmethod
+    def of(cls, file: h5py.File) -> StoredStates:
+        """The states of a result."""
+        return cls(file, layout.read_problem(file), layout.read_grid(file), len(layout.read_history(file)))
 
     def blocks(self) -> Iterator[StateBlock]:
         """Give the nodal values of all states, in order."""
         group = self._file["states"]
         marks = [name for name in layout.BORDER_FIELDS if name in layout.node_fields(group)]
-        names = ["pressure", "shear", "status", *marks, *NUMBERS]
+        numbers = [name for name in NUMBERS if name in layout.number_fields(group)]
+        names = ["pressure", "shear", "status", *marks, *numbers]
         seated = [
             f"{layout.SEATED[1]}{name}"
             for name in ("pressure", "shear", "status", "slip", *marks, *layout.SEAT_NUMBERS)
@@ -139,7 +155,7 @@ class StoredStates(KeptStates):
         seated = seated if "seat" in group else []
         for begin in range(0, self.points.size, AT_ONCE):
             rows = layout.read_rows(group, [*names, "loads", *seated], slice(begin, begin + AT_ONCE))
-            for name in ("pressure", "shear", "loads", *NUMBERS, *seated):
+            for name in ("pressure", "shear", "loads", *numbers, *seated):
                 if not name.endswith(tuple(layout.BORDER_FIELDS)):
                     check_finite(f"states/{name}", rows[name])
             loads = layout.all_loads(rows["loads"], 0.0)
@@ -157,13 +173,13 @@ class StoredStates(KeptStates):
 
 def _block_of(rows: layout.Rows, loads: np.ndarray, marks: list[str]) -> StateBlock:
     """The nodal values of some states from their rows. `marks` are the names of the arrays of old borders."""
-    more = tuple(rows[name] for name in marks), {name: rows[name] for name in NUMBERS}
+    more = tuple(rows[name] for name in marks), {name: rows[name] for name in NUMBERS if name in rows}
     return StateBlock(rows["pressure"], rows["shear"], rows["status"], loads, *more)
 
 
 def read_extremes(file: h5py.File, find: Callable[[KeptStates], Found] = extremes.marked_extremes) -> Found:
     """Return the extremes of all states of a file: those that it names, or those that are found."""
-    kept = StoredStates(file)
+    kept = StoredStates.of(file)
     return _stored(file, kept) or find(kept)
 
 
@@ -173,7 +189,7 @@ def write_extremes(file: h5py.File, kept: KeptStates | None = None) -> None:
     if size < LEAST_STORED:
         return
     try:
-        found = extremes.marked_extremes(StoredStates(hdf5.Group(file)) if kept is None else kept)
+        found = extremes.marked_extremes(StoredStates.of(hdf5.Group(file)) if kept is None else kept)
     except ReadingError:  # who asks for the extremes is told
         return
     group = file.create_group("extremes")

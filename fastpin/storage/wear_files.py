@@ -226,7 +226,7 @@ class WearFile:
         nodes = task.options.nodes if task.grid is None else grid.size
         attributes = {**layout.option_attributes(task.options), "nodes": nodes, "slip_sums": True, "title": self._title}
         attributes |= layout.beside_attributes(self._beside)
-        self.file.begin(task.problem, task.stored_history, grid, attributes)
+        self.file.begin(lambda h5: layout.write_head(h5, task.problem, task.stored_history, grid, attributes))
         group = self._h5.create_group("wear")
         group.attrs.update(law=task.wear.law, tolerance=task.wear.tolerance, chosen=np.array(task.wear.chosen))
         group["coefficients"] = task.coefficients(grid.theta)

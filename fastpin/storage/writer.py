@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError, OutputError
-from fastpin.model import About, Grid, LoadHistory, Problem
+from fastpin.model import About
 from fastpin.solver import Interrupted, Restart, Result, SolveError
 from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.task import Task, deferred_interrupts
@@ -96,8 +96,8 @@ class GrowingFile:
         Name of the run that writes it. A checkpoint has the same one.
     """
 
-    def __init__(self, path: Path) -> None:
-        self.path, self.run = path, ""
+    def __init__(self, path: Path, form: str = layout.FORMAT) -> None:
+        self.path, self.run, self._form = path, "", form
         self.h5: h5py.File
         self._file: JournaledFile | None = None
         self._next_checkpoint = 0.0
@@ -107,7 +107,7 @@ class GrowingFile:
         """Whether the file has begun, and has not ended."""
         return self._file is not None
 
-    def begin(self, problem: Problem, history: LoadHistory, grid: Grid, attributes: Mapping[str, Any]) -> None:
+    def begin(self, write_head: Callable[[h5py.File], None]) -> None:
         """Begin a new file with its head, in place of one that has begun; see :func:`layout.write_head`.
 
         Raises
@@ -122,7 +122,7 @@ class GrowingFile:
         self._file = JournaledFile(self.path, new=True)
         self.h5 = h5py.File(self._file, "w")
         self.h5.flush()  # The signature goes first: what a killed process leaves is known as a result.
-        layout.write_head(self.h5, problem, history, grid, attributes)
+        write_head(self.h5)
         self.h5.attrs["run"] = self.run
 
     @contextmanager
@@ -153,7 +153,7 @@ class GrowingFile:
         try:
             with reading(self.path, *arguments):
                 stored = hdf5.Group(self.h5)
-                layout.check_format(stored, str(self.path))
+                layout.check_format(stored, str(self.path), self._form)
                 yield stored
                 self.run = str(self.h5.attrs["run"])
                 self.h5.attrs.pop("error", None)
@@ -214,6 +214,48 @@ class GrowingFile:
         if self._file is not None:
             self._file.abandon()
             self.close()
+
+
+class WaitingRows:
+    """Rows of arrays that wait for the next commit of a file, by the group that takes them.
+
+    Attributes
+    ----------
+    states : int
+        States among them.
+    """
+
+    def __init__(self, file: GrowingFile) -> None:
+        self._file, self._next_commit, self.states = file, 0.0, 0
+        self._rows: dict[str, list[layout.Rows]] = {}
+
+    def is_due(self, now: float) -> bool:
+        """Whether they have waited long enough at the time `now`."""
+        return self.states >= MOST_PENDING or now > self._next_commit
+
+    def __bool__(self) -> bool:
+        return bool(self._rows)
+
+    def add(self, states: int, rows: Mapping[str, layout.Rows]) -> None:
+        """Take the rows of so many states."""
+        self.states += states
+        for group, more in rows.items():
+            self._rows.setdefault(group, []).append(more)
+
+    def commit(self) -> None:
+        """Write them, and end the transaction."""
+        began = time.monotonic()
+        try:
+            for group, parts in self._rows.items():
+                rows = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+                layout.append(self._file.h5[group], rows)
+            self._file.commit()
+        except OutputError:
+            self._file.abort()
+            raise
+        self._rows, self.states = {}, 0
+        now = time.monotonic()
+        self._next_commit = now + COMMIT_SHARE * (now - began)
 
 
 class FileWriter(Protocol):
@@ -290,15 +332,12 @@ class FileRecorder:
         self.overwrite = True
         self._title, self._about, self._beside = title, about, beside
         self._run: Run
-        self._states: list[layout.Rows] = []  # waiting for the next commit
-        self._cycles: list[Cycle] = []
-        self._pending = 0
+        self._waiting = WaitingRows(self.file)
         # Pairs of numbers: states, cycles.
         self._at = [0, 0]  # received from the run
         self._stored = [0, 0]  # in the file
         self._corner = [0, 0]  # received up to the last corner
         self._copied: layout.Rows | None = None
-        self._next_commit = 0.0
         self._seconds = 0.0
         self._began = time.monotonic()
 
@@ -308,7 +347,7 @@ class FileRecorder:
 
     def reopen(self, file: GrowingFile, restart_group: hdf5.Group) -> None:
         """Continue a file from a restart in it. The run gives the later states again."""
-        self.file = file
+        self.file, self._waiting = file, WaitingRows(file)
         self._stored = [layout.count(self._h5["states"]), layout.count(self._h5["cycles"])]
         counts = int(restart_group.attrs["states"]), int(restart_group.attrs["cycles"])
         self._at, self._corner = list(counts), list(counts)
@@ -333,13 +372,13 @@ class FileRecorder:
             return  # The file was reopened.
         if not self.file.is_open:
             self.check_overwriting()  # Check again: the choice of the arc may have taken long.
-        self._states, self._cycles, self._pending = [], [], 0
+        self._waiting = WaitingRows(self.file)
         self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
         task = self.task
         attributes = {**layout.option_attributes(task.options), "nodes": run.grid.size, "title": self._title}
         attributes |= {**self._about.given(), **layout.beside_attributes(self._beside)}
         attributes |= {"arc_chosen": self.chosen_arc, "save_after": sorted(task.save_after)}
-        self.file.begin(task.problem, task.history, run.grid, attributes)
+        self.file.begin(lambda h5: layout.write_head(h5, task.problem, task.history, run.grid, attributes))
         for name in ("start", "latest"):
             self._write_restart(self._h5.create_group(f"restart/{name}"))
         self._commit()
@@ -354,7 +393,7 @@ class FileRecorder:
         """Take a cycle, unless the file has it already."""
         self._at[1] += 1
         if self._at[1] > self._stored[1]:
-            self._cycles.append(cycle)
+            self._waiting.add(0, {"cycles": layout.cycle_rows([cycle])})
 
     def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray, slip: SlipFields) -> None:
         """Take the latest states once more, with other steps and energies; see :meth:`fastpin.solver.run.Recorder`."""
@@ -380,7 +419,7 @@ class FileRecorder:
         if self._run.corner in self.task.save_after and str(self._run.corner) not in self._h5["restart"]:
             self._write_restart(self._h5.create_group(f"restart/{self._run.corner}"))
             self._commit()
-        elif now > self._next_commit:
+        elif self._waiting.is_due(now):
             self._commit()
 
         def write(group: h5py.Group) -> None:
@@ -395,7 +434,7 @@ class FileRecorder:
     def end(self, error: str | None) -> None:
         """End the file with the statistics of the run and the message of its error, if any."""
         run = self._run
-        if self._pending or self._cycles:
+        if self._waiting:
             self._commit()
         del self._h5["restart/latest"]
         self._write_restart(self._h5.create_group("restart/latest"))
@@ -421,9 +460,8 @@ class FileRecorder:
             rows = {name: array[known:] for name, array in rows.items()}
         self._at[0] += size
         if size > known:
-            self._states.append(rows)
-            self._pending += size - known
-            if self._pending >= MOST_PENDING or time.monotonic() > self._next_commit:
+            self._waiting.add(size - known, {"states": rows})
+            if self._waiting.is_due(time.monotonic()):
                 self._commit()
 
     def _put_again(self, rows: layout.Rows, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
@@ -431,21 +469,8 @@ class FileRecorder:
 
     def _commit(self) -> None:
         """Write the waiting states and cycles, and end the transaction."""
-        began = time.monotonic()
-        try:
-            if self._states:
-                rows = {name: np.concatenate([part[name] for part in self._states]) for name in self._states[0]}
-                layout.append(self._h5["states"], rows)
-            if self._cycles:
-                layout.append(self._h5["cycles"], layout.cycle_rows(self._cycles))
-            self.file.commit()
-        except OutputError:
-            self.file.abort()
-            raise
+        self._waiting.commit()
         self._stored = [max(stored, at) for stored, at in zip(self._stored, self._at, strict=True)]
-        self._states, self._cycles, self._pending = [], [], 0
-        now = time.monotonic()
-        self._next_commit = now + COMMIT_SHARE * (now - began)
         log.debug("%d states in the file", self._stored[0])
 
     def _write_restart(self, group: h5py.Group) -> None:

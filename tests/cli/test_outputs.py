@@ -48,7 +48,7 @@ STATES = {"--json": ".json", "--plot": ".png", "--cycles": ".svg", "--record": "
 TEXTS: dict[str, dict[str, str]] = {
     "run": STATES,
     "resume": STATES,
-    "show": STATES,
+    "show": {**STATES, "--shares": ".svg"},
     "plot": {"--output": ".png", "--csv": ".csv"},
     "crack": {"--output": ".png", "--csv": ".csv", "--json": ".json"},
     "report": {"--output": ".html"},
@@ -69,7 +69,7 @@ ENDINGS = [(name, option, ending) for name, found in TEXTS.items() for option, e
 ENDINGS.append(("report", "--output", ".pdf"))
 """Commands, their options and the endings of their files."""
 
-RESULTS = {"run": {"--output"}, "wear": {"--output"}}
+RESULTS = {name: {"--output"} for name in ("run", "wear", "joint")}
 DIRECTORIES = {name: {"--output"} for name in ("sweep", "tolerances", "merge", "paper", "benchmarks")}
 INPUTS = {
     "run": {"--start"},
@@ -77,6 +77,7 @@ INPUTS = {
     "sweep": {"--outcomes"},
     "tolerances": {"--outcomes"},
     "report": {"--case", "--plan"},
+    "joint": {"--resume"},
 }
 
 
