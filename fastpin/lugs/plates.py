@@ -226,13 +226,25 @@ def harmonic_sizes(matrix: np.ndarray) -> np.ndarray:
 
 def hole_compliance(order: int, kolosov: float) -> np.ndarray:
     """The matrix "hole" of (T41): the hole in the infinite plate, without its first harmonic of the force."""
-    matrix = np.zeros((2 + 4 * order, 2 + 4 * order))
-    matrix[0, 0] = matrix[1, 1] = 0.5
-    for n in range(1, order + 1):
-        plus, minus = 0.5 / (n + 1), 0.5 * kolosov / (n - 1) if n > 1 else 0.0
-        same, other = 0.5 * (plus + minus), 0.5 * (plus - minus)
-        block = np.diag([same] * 4) + np.diag([other, -other, -other, other])[:, ::-1]
-        matrix[4 * n - 2 : 4 * n + 2, 4 * n - 2 : 4 * n + 2] = block
+    n = np.arange(1, order + 1)
+    backward = np.where(n > 1, 0.5 * kolosov / np.maximum(n - 1, 1), 0.0)
+    return harmonic_matrix((0.5, 0.5), 0.5 / (n + 1), backward)
+
+
+def harmonic_matrix(mean: tuple[float, float], forward: np.ndarray, backward: np.ndarray) -> np.ndarray:
+    """The matrix, in the basis of a compliance, that multiplies each harmonic of r + i theta components by a number.
+
+    Parameters
+    ----------
+    mean : (float, float)
+        Factors of the mean along r and along theta.
+    forward, backward : ndarray, shape (K,)
+        Factors of exp(i n theta) and exp(-i n theta), n = 1 to K.
+    """
+    matrix = np.diag(np.r_[mean, np.repeat(0.5 * (forward + backward), 4)])
+    for place, other in enumerate(0.5 * (forward - backward)):
+        block = slice(4 * place + 2, 4 * place + 6)
+        matrix[block, block] += np.diag([other, -other, -other, other])[:, ::-1]
     return matrix
 
 
@@ -316,7 +328,7 @@ def respond(
     loaded |= lug.floats  # the outline balances the pins
     equations, resultants = PlateEquations(lug, edges, lambda done: progress(0.7 * done), loaded), None
     if equations.modes is not None:
-        tractions, resultants = _balanced(tractions, equations.modes)
+        tractions, resultants = balanced(tractions, equations.modes)
     u, pulled = equations.solve(tractions)
     # 2G u is 2 by a unit of G times the strain
     warm, hindered = equations.solve(np.zeros((edges.z.size, 1)), -2.0 * edges.z[:, None])
@@ -344,6 +356,12 @@ class RigidModes(NamedTuple):
     weighted: np.ndarray
     gram: np.ndarray
 
+    def mean_motion(self, moved: np.ndarray) -> np.ndarray:
+        """The rigid motions of all nodes that move the outline as `moved` does in the mean; complex, (nodes, m)."""
+        factors = np.linalg.solve(self.gram, self.on_outline.T @ np.concatenate([moved.real, moved.imag]))
+        x, y = np.split(self.of_nodes @ factors, 2)
+        return np.asarray(x + 1j * y)
+
 
 def _rigid_modes(lug: Lug, edges: Edges) -> RigidModes:
     z, last = edges.z, edges.of_hole + len(lug.outline)
@@ -355,7 +373,7 @@ def _rigid_modes(lug: Lug, edges: Edges) -> RigidModes:
     return RigidModes(both, on_outline, both * weights, on_outline.T @ both)
 
 
-def _balanced(tractions: np.ndarray, modes: RigidModes) -> tuple[np.ndarray, np.ndarray]:
+def balanced(tractions: np.ndarray, modes: RigidModes) -> tuple[np.ndarray, np.ndarray]:
     """Tractions (nodes, columns) that linear ones on the outline balance, and their resultants before, (3, columns)."""
     both = np.concatenate([tractions.real, tractions.imag])
     resultants = modes.weighted.T @ both
@@ -420,18 +438,24 @@ def _tractions(lug: Lug, edges: Edges, order: int, pinned: Mapping[str, int]) ->
 
     The tractions are complex, shape (nodes, sum of 2 + 4 K of all edges with a pin + loads).
     """
-    loads = tuple(sorted({load.name for load in lug.loads}))
     found = [_of_harmonics(edges.z, ~edges.is_further, order)]
     for hole in lug.holes:
         if hole.name in pinned:
             away = edges.z - hole.centre / lug.hole_radius
             found.append(_of_harmonics(away, _on_parts(lug, edges, hole.name), pinned[hole.name]))
+    acting, loads = load_tractions(lug, edges)
+    return np.hstack([*found, acting]), loads
+
+
+def load_tractions(lug: Lug, edges: Edges) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Tractions of the unit loads of a plate at all nodes, complex, (nodes, loads), and the names of the loads."""
+    loads = tuple(sorted({load.name for load in lug.loads}))
     acting = np.zeros((edges.z.size, len(loads)), dtype=complex)
     for load in lug.loads:
         for name in load.parts:
             on = _on_parts(lug, edges, name)
             acting[on, loads.index(load.name)] += complex(load.x, load.y) + load.normal * edges.normals[on]
-    return np.hstack([*found, acting]), loads
+    return acting, loads
 
 
 def _of_harmonics(away: np.ndarray, on_hole: np.ndarray, order: int) -> np.ndarray:

@@ -10,13 +10,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fastpin.bodies.compliance import LEAST_ORDER
 from fastpin.lugs.outline import Lug
-from fastpin.lugs.plates import FINE, edge_basis, hole_compliance, respond
+from fastpin.lugs.panels import Boundary, Edges
+from fastpin.lugs.plates import (
+    FINE,
+    PlateEquations,
+    balanced,
+    boundaries,
+    edge_basis,
+    harmonic_matrix,
+    hole_compliance,
+    load_tractions,
+)
 from fastpin.model.loads import LOADS, SXX, SXY, SYY
+
+FURTHER = 12
+"""Harmonics of the series beyond those that are kept."""
+
+UNFELT = 1e-15
+"""Traction on an edge without a pin, by unit tractions on a hole, that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,16 +76,43 @@ class HolesCompliance:
 def holes_in_outline(lug: Lug, pinned: Sequence[str], order: int, progress: Callable[[float], None]) -> HolesCompliance:
     """The compliance of a finite plate: its first hole and the further holes with these names carry a pin.
 
+    The field has the series of each hole alone, as in :func:`holes_in_infinite_plate`, and a rest that is regular in
+    these holes. Integral equations on all other edges give the rest. Betti's theorem gives what the holes feel of it.
+
     ``progress(done)`` is called from time to time, with the part that is done.
     """
-    each, count = 2 + 4 * order, 1 + len(pinned)
-    response = respond(lug, order, FINE, progress, dict.fromkeys(pinned, order))
-    whole = response.projected()
-    square = whole[:, : each * count]
-    matrix = 0.5 * (square + square.T) - np.kron(np.eye(count), hole_compliance(order, lug.kolosov))
-    columns = dict(zip(response.loads, whole[:, each * count :].T, strict=True))
-    carried = () if response.resultants is None else response.resultants[:, each * count :].T
-    return HolesCompliance(matrix, columns, count, dict(zip(response.loads, carried, strict=False)))
+    places = {hole.name: hole.centre / lug.hole_radius for hole in lug.holes}
+    centres, highest = np.array([0j, *(places[name] for name in pinned)]), order + FURTHER
+    edges = Edges(_edges_beside(lug, pinned), FINE)
+    equations = PlateEquations(lug, edges, progress)
+    modes, kolosov = equations.modes, equations.kolosov
+    potentials = _potentials(highest, kolosov)
+    alone = [_fields(potentials, edges.z - centre, edges.normals, kolosov) for centre in centres]
+    on_edges, displaced = (np.hstack(fields) for fields in zip(*alone, strict=True))
+    felt_there = np.flatnonzero(np.abs(on_edges).max(axis=0) > UNFELT)
+    along = edges.normals[:, None]
+    pulled, moved = -on_edges[:, felt_there] * along, 2.0 * displaced[:, felt_there] * along  # t and 2G u/R
+    acting, loads = load_tractions(lug, edges)
+    given, back, resultants = np.hstack([-pulled, acting]), np.hstack([-moved, np.zeros_like(acting)]), None
+    if modes is not None:
+        given, resultants = balanced(given, modes)
+    u, t = (x + 1j * y for x, y in equations.solve(given, back))
+    if modes is not None:  # the mean of the whole motion of the outline vanishes
+        u += modes.mean_motion(back)
+    (tractions, displacements), count = _series(centres, highest, kolosov), on_edges.shape[1]
+    felt = np.zeros((count, count + len(loads)))
+    felt[np.ix_(felt_there, np.r_[felt_there, count : felt.shape[1]])] = (
+        0.5 / math.pi * (_work(edges, moved, t) - _work(edges, pulled, u))
+    )
+    by_hole = felt.reshape(centres.size, -1, felt.shape[1])
+    rest = [(kind @ by_hole).reshape(felt.shape) for kind in _of_rest(highest, kolosov)]
+    compliance = np.linalg.solve((tractions + rest[0][:, :count]).T, (displacements + rest[1][:, :count]).T).T
+    by_loads = rest[1][:, count:] - compliance @ rest[0][:, count:]
+    kept = np.flatnonzero(np.arange(count) % (2 + 4 * highest) < 2 + 4 * order)
+    carried = () if resultants is None else resultants[:, felt_there.size :].T
+    matrix = _beyond_holes(compliance[np.ix_(kept, kept)], order, lug.kolosov)
+    columns = dict(zip(loads, by_loads[kept].T, strict=True))
+    return HolesCompliance(matrix, columns, centres.size, dict(zip(loads, carried, strict=False)))
 
 
 def holes_in_infinite_plate(kolosov: float, centres: np.ndarray, order: int) -> HolesCompliance:
@@ -77,38 +121,70 @@ def holes_in_infinite_plate(kolosov: float, centres: np.ndarray, order: int) -> 
     Each hole alone has Kolosov's potentials phi' = sum A_k w^-k and psi' = sum B_k w^-k, w = z - centre. Their
     tractions and displacements on all edges are projected on the harmonics: S and D. The compliance is D S^-1.
     """
-    count, each = centres.size, 2 + 4 * order
-    points = 4 * order + 16
-    theta = 2.0 * math.pi / points * np.arange(points)
-    radial = np.exp(1j * theta)
-    basis = 2.0 / points * np.conj(edge_basis(radial, order)).T * radial  # of r and theta components
-
-    def projected(field: np.ndarray) -> np.ndarray:
-        """The coefficients (2 + 4 K, ...) of a field of r + i theta components (points, ...)."""
-        return (basis @ field).real
-
-    tractions, moved = np.empty((2, count * each, count * each))
-    potentials = _potentials(order, kolosov)
-    for i in range(count):
-        own = slice(each * i, each * i + each)
-        for j in range(count):
-            w = radial + (centres[j] - centres[i])
-            on_edge, displaced = _fields(potentials, w, radial, kolosov)
-            rows = slice(each * j, each * j + each)
-            tractions[rows, own], moved[rows, own] = projected(on_edge), projected(displaced)
+    tractions, moved = _series(centres, order, kolosov)
     compliance = np.linalg.solve(tractions.T, moved.T).T
+    radial, basis = _rim(order)
     columns = {}
     for place, (mean, deviator) in {SXX: (0.25, -0.5), SYY: (0.25, 0.5), SXY: (0.0, 1j)}.items():
-        remote_traction, remote_moved = np.empty((2, count * each))
-        for j in range(count):
-            rows, z = slice(each * j, each * j + each), radial + centres[j]
-            spread = 2.0 * mean - radial**2 * deviator  # s_rr - i s_rtheta of the uniform stress
-            turned = 0.5 * (kolosov * mean * z - mean * z - np.conj(deviator * z)) * np.conj(radial)
-            remote_traction[rows] = projected(-np.conj(spread))
-            remote_moved[rows] = projected(turned)
-        columns[LOADS[place]] = remote_moved - compliance @ remote_traction
-    matrix = 0.5 * (compliance + compliance.T) - np.kron(np.eye(count), hole_compliance(order, kolosov))
-    return HolesCompliance(matrix, columns, count)
+        z = radial + centres[:, None]
+        spread = 2.0 * mean - radial**2 * deviator  # s_rr - i s_rtheta of the uniform stress
+        turned = 0.5 * (kolosov * mean * z - mean * z - np.conj(deviator * z)) * np.conj(radial)
+        remote = np.tile((basis @ -np.conj(spread)).real, centres.size)
+        columns[LOADS[place]] = (turned @ basis.T).real.ravel() - compliance @ remote
+    return HolesCompliance(_beyond_holes(compliance, order, kolosov), columns, centres.size)
+
+
+def _rim(order: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points on the edge of a hole, and the map of r + i theta components there to coefficients (2 + 4 K)."""
+    points = 4 * order + 16
+    radial = np.exp(2j * math.pi / points * np.arange(points))
+    return radial, 2.0 / points * np.conj(edge_basis(radial, order)).T * radial
+
+
+def _series(centres: np.ndarray, order: int, kolosov: float) -> tuple[np.ndarray, np.ndarray]:
+    """Tractions and displacements of all holes (H m) by the series of each hole alone (H m)."""
+    (radial, basis), potentials = _rim(order), _potentials(order, kolosov)
+    each = 2 + 4 * order
+    found = np.empty((2, centres.size, each, centres.size, each))
+    for i, own in enumerate(centres):
+        for j, other in enumerate(centres):
+            fields = _fields(potentials, radial + (other - own), radial, kolosov)
+            found[:, j, :, i] = [(basis @ field).real for field in fields]
+    tractions, moved = found.reshape(2, centres.size * each, -1)
+    return tractions, moved
+
+
+def _beyond_holes(compliance: np.ndarray, order: int, kolosov: float) -> np.ndarray:
+    """A compliance, made symmetric, without that of each hole in an infinite plate of its own."""
+    own = hole_compliance(order, kolosov)
+    return np.asarray(0.5 * (compliance + compliance.T) - np.kron(np.eye(len(compliance) // len(own)), own))
+
+
+def _edges_beside(lug: Lug, pinned: Sequence[str]) -> list[Boundary]:
+    """All edges without a pin, in hole radii. Their panels are no longer than the distance of a hole with a pin."""
+    own, *loops = boundaries(lug, LEAST_ORDER)
+    with_pin = [own, *(loop for loop in loops if loop.parts[0].name in pinned)]
+    beside = tuple((part, 1.0) for loop in with_pin for part in loop.parts)
+    others = [replace(loop, beside=beside) for loop in loops if loop.parts[0].name not in pinned]
+    return [Boundary((), (), ()), *others]  # the first one stands for the pin's hole
+
+
+def _work(edges: Edges, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Integrals along the edges of the products of two sets of vectors, (nodes, m) and (nodes, c), shape (m, c)."""
+    weighted = edges.weights[:, None] * other
+    return np.asarray(one.real.T @ weighted.real + one.imag.T @ weighted.imag)
+
+
+def _of_rest(order: int, kolosov: float) -> tuple[np.ndarray, np.ndarray]:
+    """Maps of Betti's products of a field that is regular in a hole to its tractions f and displacements v = G u/R.
+
+    The product with the series of a function of the basis is a coefficient of v - hole f, with the compliance "hole" of
+    (T41). In the hole the harmonics have f_n = -2 (n + 1)/k v_n, f_-n = -2 (n - 1) v_-n and f_0 = -4/(k - 1) v_0.
+    """
+    n, whole = np.arange(1, order + 1), kolosov + 1.0
+    tractions = harmonic_matrix((-4.0 / whole, 0.0), -2.0 * (n + 1) / whole, -2.0 * (n - 1) / whole)
+    backward = np.where(n > 1, 1.0 / whole, 1.0)
+    return tractions, harmonic_matrix(((kolosov - 1.0) / whole, 1.0), np.full(order, kolosov / whole), backward)
 
 
 def _potentials(order: int, kolosov: float) -> np.ndarray:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 from fastpin.bodies.compliance import complex_coefficients
-from fastpin.lugs.outline import Hole, Lug, rectangle
+from fastpin.lugs.outline import Hole, Lug, PartLoad, rectangle
+from fastpin.lugs.plates import FINE, hole_compliance, respond
 from fastpin.lugs.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
 
 KOLOSOV = (3.0 - 0.33) / 1.33
@@ -71,3 +73,41 @@ def test_a_wide_plate_is_nearly_infinite() -> None:
     for by in (0, 1):
         less = finite.block(0, by)[np.ix_(inner, inner)] - infinite.block(0, by)[np.ix_(inner, inner)]
         assert np.abs(less).max() < 2e-3
+
+
+def lug_of(box: tuple[float, float, float, float], supports: dict[str, str], **given: Any) -> Lug:
+    further = Hole("second", 2.7 + 0.5j, 1.0)
+    free = (Hole("window", -2.5 + 1.0j, 0.6), further)
+    return Lug(given.pop("nu", 0.33), "strain", 1.0, rectangle(box[:2], box[2:]), supports, holes=free, **given)
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize(
+    ("supports", "given"),
+    [
+        ({"left": "both"}, {}),
+        ({"left": "normal", "bottom": "normal"}, {"loads": (PartLoad("sxx", ("right",), x=1.0),)}),
+        ({}, {"floats": True, "loads": (PartLoad("sxy", ("right",), x=0.2, y=1.0),)}),
+    ],
+)
+def test_series_of_holes_agree_with_panels_on_their_edges(supports: dict[str, str], given: dict[str, Any]) -> None:
+    """Near edges, a hole without a pin, supports, loads: other unknowns and other integrals give the same numbers."""
+    lug = lug_of((-5.0, 5.0, -1.8, 3.0), supports, **given)
+    found = holes_in_outline(lug, ["second"], 5, lambda done: None)
+    response = respond(lug, 5, FINE, lambda done: None, {"second": 5})
+    whole = response.projected()
+    expected = 0.5 * (whole[:, :44] + whole[:, :44].T) - np.kron(np.eye(2), hole_compliance(5, lug.kolosov))
+    np.testing.assert_allclose(found.matrix, expected, atol=1e-9 * np.abs(expected).max())
+    for place, name in enumerate(response.loads, start=44):
+        np.testing.assert_allclose(found.columns[name], whole[:, place], atol=1e-9 * np.abs(whole[:, place]).max())
+        if response.resultants is not None:
+            np.testing.assert_allclose(found.resultants[name], response.resultants[:, place], atol=1e-9)
+
+
+@pytest.mark.gate
+def test_the_compliance_is_continuous_where_a_plate_becomes_incompressible() -> None:
+    entries = []
+    for nu in (0.4998, 0.4999, 0.5):
+        lug = lug_of((-5.0, 6.0, -3.0, 3.0), {"left": "both"}, nu=nu)
+        entries.append(holes_in_outline(lug, ["second"], 4, lambda done: None).matrix)
+    np.testing.assert_allclose(entries[2], 2.0 * entries[1] - entries[0], atol=3e-5)
