@@ -12,11 +12,13 @@ rank one of one table, and of the answers.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from fastpin.elasticity.operator import Operator
 from fastpin.elasticity.system import System
-from fastpin.kernels.arrays import Contact, Tableau
+from fastpin.kernels.arrays import Contact
 from fastpin.kernels.exchange import CHUNK
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas, lapack
@@ -42,6 +44,8 @@ class Ports(Operator):
         Places of the inputs among the motions and harmonics.
     couplings : ndarray, shape (g, S p)
         Map the outputs of all interfaces to the g equations of motions and harmonics.
+    plates : sequence of list of int
+        The interfaces of each plate. Only these feel the harmonics of one another.
 
     Attributes
     ----------
@@ -53,10 +57,17 @@ class Ports(Operator):
     by_distance = False
 
     def __init__(
-        self, rows: np.ndarray, tables: np.ndarray, motions: int, inputs: np.ndarray, couplings: np.ndarray
+        self,
+        rows: np.ndarray,
+        tables: np.ndarray,
+        motions: int,
+        inputs: np.ndarray,
+        couplings: np.ndarray,
+        plates: Sequence[list[int]],
     ) -> None:
         super().__init__(rows.size)
         self.rows, self.tables, self.motions, self.inputs, self.couplings = rows, tables, motions, inputs, couplings
+        self.plates = plates
         self.place = np.argsort(rows.ravel())
 
     def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
@@ -105,7 +116,7 @@ class PortColumns(Columns):
         memory: TableauMemory,
         room: int | None = None,
     ) -> None:
-        n, updates = system.grid.size, memory.left.shape[1] if room is None else room
+        n = system.grid.size
         self._system, self._ports, self._contact = system, ports, contact
         self._updates = self._done = self._waiting = 0
         self._latest: tuple[int, np.ndarray] | None = None  # the column that was asked for last, and what it moves
@@ -115,33 +126,20 @@ class PortColumns(Columns):
         self._tables = self._held(dependent)
         self._answers = self._joined()
         rows, columns = self._answers.shape
-        self._left, self._right = np.empty((rows, CHUNK)), np.empty((columns, CHUNK), order="F")
+        self._left, self._right = (np.empty((size, CHUNK), order="F") for size in (rows, columns))
         displaced = system.load_displacement(load_rate)
         given = np.r_[np.where(dependent, -displaced, 0.0), system.load_forces(load_rate)]
         rates = self.response(given, 0)
         rates[: 2 * n] += np.where(dependent, 0.0, displaced)
         self._tie_all(rates)
-        self.tableau = Tableau(
-            matrix=memory.matrix,
-            fresh=np.full(2 * n, -1),
-            left=memory.left[:, :updates],
-            source=np.empty(updates, dtype=np.int64),
-            slot=np.empty(updates, dtype=np.int64),
-            delta=np.empty(updates),
-            rates=rates,
-            order=np.zeros(0, dtype=np.int64),
-            tied=np.zeros(0),
-            drag=np.zeros(0),
-            chunk=1,
-            width=1,
-        )
+        self.tableau = memory.tableau(rates, room, chunk=1, width=1)
 
     def refresh(self, asked: int, updates: int) -> None:
         """Compute the column `asked`, with all updates. `updates` is their number."""
         self._catch_up(updates)
         nodes = self._ports.rows.shape[1]
         place, own = divmod(int(self._ports.place[asked]), nodes)
-        column = self._tables[place, :, own]
+        column = self._tables[place, own]
         moved = -self._answered(self._outputs(place), column[nodes:])
         self._latest = asked, moved
         values = self._moved(moved)
@@ -152,12 +150,15 @@ class PortColumns(Columns):
     def response(self, given: np.ndarray, updates: int) -> np.ndarray:
         self._catch_up(updates)
         rows = self._ports.rows
-        own = (self._tables[:, :, : rows.shape[1]] @ given[rows][:, :, None])[:, :, 0]
+        own = (given[rows][:, None] @ self._tables[:, : rows.shape[1]])[:, 0]
         moved = self._answered(slice(None), np.r_[-own[:, rows.shape[1] :].ravel(), given[2 * self._coupling.size :]])
         return self._all_rows(own[:, : rows.shape[1]] + self._moved(moved), moved)
 
     def _held(self, dependent: np.ndarray) -> np.ndarray:
-        """The tables of all interfaces with the pairs `dependent` (2n,) exchanged. The other ties are 0."""
+        """The tables of all interfaces, transposed, with the pairs `dependent` (2n,) exchanged. Other ties are 0.
+
+        What an input moves then stands together in memory.
+        """
         tables, rows = self._ports.tables.copy(), self._ports.rows
         half = rows.shape[1] // 2
         tables[:, :, :half] -= self._coupling[rows[:, :half]][:, None] * tables[:, :, half : 2 * half]
@@ -169,25 +170,42 @@ class PortColumns(Columns):
             table -= columns @ given
             table[:, held], table[held] = columns, -inverse @ given
             table[np.ix_(held, held)] = inverse
-        return tables
+        return np.ascontiguousarray(tables.transpose(0, 2, 1))
 
     def _joined(self) -> np.ndarray:
-        """The motions and harmonics by outputs with the opposite sign, and by forces; (g, S p + m)."""
+        """The motions and harmonics by outputs with the opposite sign, and by forces; (g, S p + m).
+
+        The harmonics of each plate are eliminated on their own: those of two plates meet in the motions only.
+        """
         ports, rows, nodes = self._ports, self._system.motion_rows, self._ports.rows.shape[1]
-        matrix = np.eye(len(ports.couplings), order="F")
-        matrix[: len(rows), : len(rows)] = rows
+        m, matrix = len(rows), np.eye(len(ports.couplings))
+        matrix[:m, :m] = rows
         for place, inputs in enumerate(ports.inputs):
-            matrix[:, inputs] += ports.couplings[:, self._outputs(place)] @ self._tables[place, nodes:, nodes:]
-        norm = float(lapack.dlange("1", matrix))
-        factors, pivots, info = lapack.dgetrf(matrix, overwrite_a=1)
+            matrix[:, inputs] += ports.couplings[:, self._outputs(place)] @ self._tables[place, nodes:, nodes:].T
+        answers = np.zeros((len(matrix), ports.couplings.shape[1] + m))
+        left, right, of_plates = matrix[:m, :m], np.hstack([ports.couplings[:m], np.eye(m)]), []
+        for places in ports.plates:
+            felt, own = ports.inputs[places, 3:].ravel(), np.r_[*(self._outputs(place) for place in places)]
+            found = np.linalg.solve(
+                matrix[np.ix_(felt, felt)], np.hstack([matrix[felt, :m], ports.couplings[np.ix_(felt, own)]])
+            )
+            by_motion, by_outputs = found[:, :m], found[:, m:]
+            left -= matrix[:m, felt] @ by_motion
+            right[:, own] -= matrix[:m, felt] @ by_outputs
+            of_plates.append((felt, own, by_motion, by_outputs))
+        norm = float(lapack.dlange("1", left))
+        factors, pivots, info = lapack.dgetrf(left)
         if info != 0 or not np.isfinite(norm) or not lapack.dgecon(factors, norm)[0] > SINGULAR:
             raise np.linalg.LinAlgError("nothing holds a pin or a plate")
-        right = np.hstack([ports.couplings, np.eye(len(matrix), len(rows))])
-        return np.ascontiguousarray(lapack.dgetrs(factors, pivots, right)[0])
+        answers[:m] = lapack.dgetrs(factors, pivots, right)[0]
+        for felt, own, by_motion, by_outputs in of_plates:
+            answers[felt] = -by_motion @ answers[:m]
+            answers[np.ix_(felt, own)] += by_outputs
+        return answers
 
     def _outputs(self, place: int) -> slice:
         """The outputs of an interface among all."""
-        count = self._tables.shape[1] - self._ports.rows.shape[1]
+        count = self._tables.shape[2] - self._ports.rows.shape[1]
         return slice(place * count, (place + 1) * count)
 
     def _answered(self, columns: slice, given: np.ndarray) -> np.ndarray:
@@ -200,7 +218,7 @@ class PortColumns(Columns):
     def _moved(self, moved: np.ndarray) -> np.ndarray:
         """All dependent variables (S, 2k) by the motions and harmonics (g,)."""
         nodes = self._ports.rows.shape[1]
-        return np.asarray((self._tables[:, :nodes, nodes:] @ moved[self._ports.inputs][:, :, None])[:, :, 0])
+        return np.asarray((moved[self._ports.inputs][:, None] @ self._tables[:, nodes:, :nodes])[:, 0])
 
     def _all_rows(self, values: np.ndarray, moved: np.ndarray) -> np.ndarray:
         """The vector (2n+m,) from the values of the interfaces (S, 2k) and the motions."""
@@ -214,8 +232,8 @@ class PortColumns(Columns):
         self._coupling = self._system.friction * contact.tie
         half = rows.shape[1] // 2
         tied, drag = (np.where(nodes, self._coupling, 0.0)[rows[:, :half]] for nodes in (stuck, is_open))
-        self._tables[:, half : 2 * half] += tied[:, :, None] * self._tables[:, :half]
-        self._tables[:, :, :half] -= drag[:, None] * self._tables[:, :, half : 2 * half]
+        self._tables[:, :, half : 2 * half] += tied[:, None] * self._tables[:, :, :half]
+        self._tables[:, :half] -= drag[:, :, None] * self._tables[:, half : 2 * half]
         rates[n : 2 * n] += np.where(stuck, self._coupling * rates[:n], 0.0)
 
     def _catch_up(self, updates: int) -> None:
@@ -231,15 +249,15 @@ class PortColumns(Columns):
             table, shear = self._tables[place], own + self._ports.rows.shape[1] // 2
             change, self._coupling[node] = -2.0 * self._coupling[node], -self._coupling[node]
             if slot < 0:  # the tie of a sticking node has turned round
-                table[shear] += change * table[own]
+                table[:, shear] += change * table[:, own]
             else:  # that of an open node
-                table[:, own] -= change * table[:, shear]
+                table[own] -= change * table[shear]
                 self._latest = None
 
     def _exchange(self, pair: int, place: int, own: int) -> None:
         """Exchange the members of a pair, which has the row `own` of an interface."""
         nodes, table, inputs = self._ports.rows.shape[1], self._tables[place], self._ports.inputs[place]
-        column, row = table[:, own].copy(), table[own].copy()
+        column, row = table[own].copy(), table[:, own].copy()
         pivot = column[own]
         column[own] += 1.0
         row[own] -= 1.0
@@ -249,11 +267,14 @@ class PortColumns(Columns):
             moved = self._answered(self._outputs(place), column[nodes:])
         self._latest = None
         waiting, given = slice(0, self._waiting), row[nodes:]
-        by_row = given @ self._answers[inputs] + self._right[:, waiting] @ (given @ self._left[inputs, waiting])
-        blas.dger(-1.0 / pivot, row, column, a=table.T, overwrite_a=1)
+        motion, harmonic = 3 * place, self._ports.motions + (given.size - 3) * place
+        by_row = given[:3] @ self._answers[motion : motion + 3]
+        by_row += given[3:] @ self._answers[harmonic : harmonic + given.size - 3]
+        by_row += self._right[:, waiting] @ (given @ self._left[inputs, waiting])
+        blas.dger(-1.0 / pivot, column, row, a=table.T, overwrite_a=1)
         self._left[:, self._waiting] = moved / (pivot - given @ moved[inputs])
         self._right[:, self._waiting] = by_row
         self._waiting += 1
         if self._waiting == CHUNK:
-            add_product(self._answers.T, self._right, self._left.T)
+            add_product(self._answers.T, self._right, np.ascontiguousarray(self._left).T)
             self._waiting = 0

@@ -382,7 +382,8 @@ def _ports(
                 felt = slice(motions + b * modes, motions + (b + 1) * modes)
                 block = plates[one.plate].block(other.hole, one.hole)
                 couplings[felt, a, sums:] = -far[b].T @ block @ far[a]
-    return Ports(rows, tables, motions, inputs, couplings.reshape(len(couplings), -1))
+    of_plates = [[place for place, each in enumerate(sections) if each.plate == plate] for plate in range(len(plates))]
+    return Ports(rows, tables, motions, inputs, couplings.reshape(len(couplings), -1), of_plates)
 
 
 class _Conditions:

@@ -52,6 +52,25 @@ class TableauMemory:
         self._sticking: tuple[tuple[System, bytes] | None, StickingRun | None] = None, None
         self._dense: tuple[tuple[System, bytes] | None, DenseUnknowns | None] = None, None
 
+    def tableau(self, rates: np.ndarray, room: int | None, chunk: int, width: int) -> Tableau:
+        """A tableau with these rates, before any update, in this memory; see :class:`Columns` for `room`."""
+        left = self.left[:, :room]
+        updates = left.shape[1]
+        return Tableau(
+            matrix=self.matrix,
+            fresh=np.full(-(-self.matrix.shape[1] // width), -1),
+            left=left,
+            source=np.empty(updates, dtype=np.int64),
+            slot=np.empty(updates, dtype=np.int64),
+            delta=np.empty(updates),
+            rates=rates,
+            order=np.zeros(0, dtype=np.int64),
+            tied=np.zeros(0),
+            drag=np.zeros(0),
+            chunk=chunk,
+            width=width,
+        )
+
     def sticking(self, system: System, status: np.ndarray) -> StickingRun | None:
         """The unknowns of given statuses by a fast inverse, see :meth:`StickingRun.of`."""
         if not StickingRun.is_for(system, status):  # the kept one stays
@@ -111,7 +130,7 @@ class Columns:
         memory: TableauMemory,
         room: int | None = None,
     ) -> None:
-        n, updates = system.grid.size, memory.left.shape[1] if room is None else room
+        n = system.grid.size
         self._system, self._basis = system, basis
         # Stacked vectors hold the unknowns and, below them, the others. `_order` has the places of (N or h), (T or s)
         # and the motion in them.
@@ -122,20 +141,8 @@ class Columns:
         self._contact, self._updates = contact, 0
         unknowns = basis.rates(load_rate)
         displaced = system.load_displacement(load_rate) + basis.displacement(unknowns)
-        self.tableau = Tableau(
-            matrix=memory.matrix,
-            fresh=np.full(-(-2 * n // WIDTH), -1),
-            left=memory.left[:, :updates],
-            source=np.empty(updates, dtype=np.int64),
-            slot=np.empty(updates, dtype=np.int64),
-            delta=np.empty(updates),
-            rates=np.r_[unknowns, displaced[basis.others]][self._order],
-            order=np.zeros(0, dtype=np.int64),
-            tied=np.zeros(0),
-            drag=np.zeros(0),
-            chunk=CHUNK,
-            width=WIDTH,
-        )
+        rates = np.r_[unknowns, displaced[basis.others]][self._order]
+        self.tableau = memory.tableau(rates, room, CHUNK, WIDTH)
         self._tie(contact)
         self._tractions = TractionRows(system, basis.rows, contact)
 
