@@ -7,7 +7,7 @@ is until it touches again. Others creep to the next state, as a pin that snaps d
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -25,8 +25,8 @@ from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.snap import creep, finite_step
 from fastpin.solver.tableau import TableauMemory
 
-JUMPS = (1e-6, 1e-4, 1e-3, 1e-2)
-"""Parts of a step at which a state beyond a snap is looked for."""
+JUMPS = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
+"""Parts of a step at which a state beyond a snap is looked for; the first one only if pins let go one by one."""
 
 NEGLIGIBLE, OF_SPRINGS = 1e-2, 10.0
 """Force of a contact that may be released, in parts of the largest one, and of that of the springs of loose pins."""
@@ -122,30 +122,39 @@ def _beyond(
 ) -> tuple[Configuration, float] | None:
     """A state a little beyond a snap, and the fraction of the step at which it lies; None if none was found.
 
-    Lemke's method takes most of the time, so it comes last.
+    Pins let go all together, then together with the loose ones, then one by one. Lemke's method takes most of the time,
+    so it comes last.
     """
     ways: list[Any] = [partial(_released, back=back) for back in BACK]
     is_bare = float(np.abs(system.passed(now.tractions)).max()) <= NOTHING
     ways.insert(len(ways) if is_bare else 0, partial(finite_step, by_lemke=False))
-    for way in (*ways, partial(creep, on_springs=_on_springs)):
-        for reached in sorted({min(done + jump, 1.0) for jump in JUMPS}):
+    pins = range(len(system.pins))
+    fewer = [partial(_released, back=0.0, pins=each) for each in (set(pins), *({pin} for pin in pins))]
+    for way in (*ways, *fewer, partial(creep, on_springs=_on_springs)):
+        for jump in JUMPS if way in fewer else JUMPS[1:]:
+            reached = min(done + jump, 1.0)
             found = way(system.resting(now.rest), now, before + reached * (after - before))
             if found is not None:
                 return found, reached
+            if reached == 1.0:
+                break
     return None
 
 
-def _released(system: PinsSystem, start: Configuration, load: np.ndarray, back: float) -> Configuration | None:
-    """A state at `load` in which contacts that carried next to nothing have let go.
+def _released(
+    system: PinsSystem, start: Configuration, load: np.ndarray, back: float, pins: Set[int] | None = None
+) -> Configuration | None:
+    """A state at `load` in which contacts that carried next to nothing have let go: all, or those of some `pins`.
 
     Their pins rest where they are, or a part `back` of their way from the middle back.
     """
     forces = np.abs(system.passed(start.tractions)[:, :2]).max(axis=1)
     springs = CENTRING * float(np.abs((start.motion - start.rest)[: 3 * forces.size]).max())
     is_light = forces <= max(NEGLIGIBLE * forces.max(), OF_SPRINGS * springs, NOTHING)
-    let_go = {system.sections[place].pin for place in np.flatnonzero(is_light & (forces > 0.0))}
+    let_go: Set[int] = {system.sections[place].pin for place in np.flatnonzero(is_light & (forces > 0.0))}
     if not let_go:
         return None
+    let_go = let_go if pins is None else pins
     loose, rest = start.copy(), start.rest.copy()
     for place in np.flatnonzero(is_light):
         if system.sections[place].pin not in let_go:  # it is loose, and stays so

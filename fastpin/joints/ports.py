@@ -132,7 +132,8 @@ class PortColumns(Columns):
         rates = self.response(given, 0)
         rates[: 2 * n] += np.where(dependent, 0.0, displaced)
         self._tie_all(rates)
-        self.tableau = memory.tableau(rates, room, chunk=1, width=1)
+        fresh = np.full(2 * n, -1)
+        self.tableau = memory.blank._replace(left=memory.left[:, :room], rates=rates, fresh=fresh, chunk=1, width=1)
 
     def refresh(self, asked: int, updates: int) -> None:
         """Compute the column `asked`, with all updates. `updates` is their number."""

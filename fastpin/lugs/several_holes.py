@@ -32,9 +32,6 @@ from fastpin.model.loads import LOADS, SXX, SXY, SYY
 FURTHER = 12
 """Harmonics of the series beyond those that are kept."""
 
-UNFELT = 1e-15
-"""Traction on an edge without a pin, by unit tractions on a hole, that is rounding."""
-
 
 @dataclass(frozen=True, eq=False)
 class HolesCompliance:
@@ -89,7 +86,7 @@ def holes_in_outline(lug: Lug, pinned: Sequence[str], order: int, progress: Call
     potentials = _potentials(highest, kolosov)
     alone = [_fields(potentials, edges.z - centre, edges.normals, kolosov) for centre in centres]
     on_edges, displaced = (np.hstack(fields) for fields in zip(*alone, strict=True))
-    felt_there = np.flatnonzero(np.abs(on_edges).max(axis=0) > UNFELT)
+    felt_there = np.flatnonzero(np.abs(on_edges).max(axis=0) > 1e-15)  # of unit tractions: less is rounding
     along = edges.normals[:, None]
     pulled, moved = -on_edges[:, felt_there] * along, 2.0 * displaced[:, felt_there] * along  # t and 2G u/R
     acting, loads = load_tractions(lug, edges)
@@ -104,8 +101,15 @@ def holes_in_outline(lug: Lug, pinned: Sequence[str], order: int, progress: Call
     felt[np.ix_(felt_there, np.r_[felt_there, count : felt.shape[1]])] = (
         0.5 / math.pi * (_work(edges, moved, t) - _work(edges, pulled, u))
     )
-    by_hole = felt.reshape(centres.size, -1, felt.shape[1])
-    rest = [(kind @ by_hole).reshape(felt.shape) for kind in _of_rest(highest, kolosov)]
+    # The product with the series of a function of the basis is a coefficient of v - hole f, with v = G u/R, tractions f
+    # and "hole" of (T41). Inside the hole f_n = -2 (n + 1)/k v_n, f_-n = -2 (n - 1) v_-n and f_0 = -4/(k - 1) v_0.
+    n, whole, by_hole = np.arange(1, highest + 1), kolosov + 1.0, felt.reshape(centres.size, -1, felt.shape[1])
+    backward = np.where(n > 1, 1.0 / whole, 1.0)
+    maps = (
+        harmonic_matrix((-4.0 / whole, 0.0), -2.0 * (n + 1) / whole, -2.0 * (n - 1) / whole),
+        harmonic_matrix(((kolosov - 1.0) / whole, 1.0), np.full(highest, kolosov / whole), backward),
+    )
+    rest = [(each @ by_hole).reshape(felt.shape) for each in maps]
     compliance = np.linalg.solve((tractions + rest[0][:, :count]).T, (displacements + rest[1][:, :count]).T).T
     by_loads = rest[1][:, count:] - compliance @ rest[0][:, count:]
     kept = np.flatnonzero(np.arange(count) % (2 + 4 * highest) < 2 + 4 * order)
@@ -173,18 +177,6 @@ def _work(edges: Edges, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Integrals along the edges of the products of two sets of vectors, (nodes, m) and (nodes, c), shape (m, c)."""
     weighted = edges.weights[:, None] * other
     return np.asarray(one.real.T @ weighted.real + one.imag.T @ weighted.imag)
-
-
-def _of_rest(order: int, kolosov: float) -> tuple[np.ndarray, np.ndarray]:
-    """Maps of Betti's products of a field that is regular in a hole to its tractions f and displacements v = G u/R.
-
-    The product with the series of a function of the basis is a coefficient of v - hole f, with the compliance "hole" of
-    (T41). In the hole the harmonics have f_n = -2 (n + 1)/k v_n, f_-n = -2 (n - 1) v_-n and f_0 = -4/(k - 1) v_0.
-    """
-    n, whole = np.arange(1, order + 1), kolosov + 1.0
-    tractions = harmonic_matrix((-4.0 / whole, 0.0), -2.0 * (n + 1) / whole, -2.0 * (n - 1) / whole)
-    backward = np.where(n > 1, 1.0 / whole, 1.0)
-    return tractions, harmonic_matrix(((kolosov - 1.0) / whole, 1.0), np.full(order, kolosov / whole), backward)
 
 
 def _potentials(order: int, kolosov: float) -> np.ndarray:

@@ -39,6 +39,8 @@ class TableauMemory:
     ----------
     matrix : ndarray, shape (2n+m, 2n)
     left : ndarray, shape (2n+m, updates)
+    blank : Tableau
+        Its arrays, without rates, in which every tableau begins.
     held : Tableau or None
         The arrays of a tableau that begins with a held contact; None before the first one.
     """
@@ -49,27 +51,14 @@ class TableauMemory:
         rows, columns = len(system.motion) + system.motions, len(system.motion)
         self.matrix = np.empty((rows, columns), order="F")  # columns that are never needed take no memory
         self.left = np.empty((rows, ROOM * system.grid.size + CHUNK), order="F")
+        (source, slot), delta = np.empty((2, self.left.shape[1]), dtype=np.int64), np.empty(self.left.shape[1])
+        self.blank = Tableau(
+            matrix=self.matrix, fresh=np.zeros(0, dtype=np.int64), left=self.left, source=source, slot=slot,
+            delta=delta, rates=np.zeros(0), order=np.zeros(0, dtype=np.int64), tied=np.zeros(0), drag=np.zeros(0),
+            chunk=CHUNK, width=WIDTH,
+        )  # fmt: skip
         self._sticking: tuple[tuple[System, bytes] | None, StickingRun | None] = None, None
         self._dense: tuple[tuple[System, bytes] | None, DenseUnknowns | None] = None, None
-
-    def tableau(self, rates: np.ndarray, room: int | None, chunk: int, width: int) -> Tableau:
-        """A tableau with these rates, before any update, in this memory; see :class:`Columns` for `room`."""
-        left = self.left[:, :room]
-        updates = left.shape[1]
-        return Tableau(
-            matrix=self.matrix,
-            fresh=np.full(-(-self.matrix.shape[1] // width), -1),
-            left=left,
-            source=np.empty(updates, dtype=np.int64),
-            slot=np.empty(updates, dtype=np.int64),
-            delta=np.empty(updates),
-            rates=rates,
-            order=np.zeros(0, dtype=np.int64),
-            tied=np.zeros(0),
-            drag=np.zeros(0),
-            chunk=chunk,
-            width=width,
-        )
 
     def sticking(self, system: System, status: np.ndarray) -> StickingRun | None:
         """The unknowns of given statuses by a fast inverse, see :meth:`StickingRun.of`."""
@@ -142,7 +131,8 @@ class Columns:
         unknowns = basis.rates(load_rate)
         displaced = system.load_displacement(load_rate) + basis.displacement(unknowns)
         rates = np.r_[unknowns, displaced[basis.others]][self._order]
-        self.tableau = memory.tableau(rates, room, CHUNK, WIDTH)
+        fresh = np.full(-(-2 * n // WIDTH), -1)
+        self.tableau = memory.blank._replace(left=memory.left[:, :room], rates=rates, fresh=fresh)
         self._tie(contact)
         self._tractions = TractionRows(system, basis.rows, contact)
 
