@@ -302,9 +302,8 @@ class ShearNodes:
 
     def old_borders(self, run: np.ndarray) -> list[OldBorder]:
         """The marked borders in the stick zone of the nodes `run`."""
-        first, n = int(run[0]), self.grid.size
-        inside = [border._replace(at=(border.at - first) % n) for border in self._marked]
-        return sorted(border for border in inside if border.at < run.size)
+        first, n, size = int(run[0]), self.grid.size, run.size
+        return sorted(OldBorder(at, *border[1:]) for border in self._marked if (at := (border.at - first) % n) < size)
 
     @cached_property
     def _marked(self) -> list[OldBorder]:

@@ -19,7 +19,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import half_line
-from fastpin.reading.old_borders import BITS, OldBorder, is_ambiguous, present_borders, truly_sticking
+from fastpin.reading.old_borders import BITS, UPWARD, OldBorder, is_ambiguous, present_borders, truly_sticking
 from fastpin.reading.zones import MOST_VALUES, end_place
 
 
@@ -78,8 +78,7 @@ class Marks:
         for node, bits in self._bits.items():
             marks[node] = bits
         for node, place in self._places.items():
-            value = _known(place)
-            places[node] = math.nan if value is None else value
+            places[node] = place.read() if isinstance(place, MarkedPlace) else place
         return marks, places
 
     def left(self, status: np.ndarray, slip: np.ndarray, slip_before: np.ndarray) -> Marks:
@@ -113,21 +112,21 @@ class Marks:
         `friction` (n,) is that of the nodes, `tractions` are the pressure and the shear (n,), `status` (n,) tells the
         zones.
         """
-        fresh: dict[int, int] = {}
-        places: dict[int, MarkedPlace | float] = {}
-        find = partial(self._place, problem, grid, friction, tractions, status)
-        depth = 1 + max((place.depth for place in self._places.values() if isinstance(place, MarkedPlace)), default=0)
+        bits, places, n = dict(self._bits), dict(self._places), status.size
         for node, inwards, sign in present_borders(status, grid.closed):
-            fresh[node] = fresh.get(node, 0) | BITS[inwards, sign]
-            if sign:
-                place = MarkedPlace(partial(find, node, inwards), depth)
+            bits[node] = bits.get(node, 0) | BITS[inwards, sign]
+            places.pop(node, None)
+            if sign and not is_ambiguous(bits[node]):
+                # The place follows from the marks of the next nodes inwards, not from an earlier place of this border.
+                near = {at: mark for at, mark in self._bits.items() if inwards * (at - node) % n < MOST_VALUES // 2}
+                is_same = near.get(node, 0) & (UPWARD if inwards > 0 else ~UPWARD)
+                known = {at: old for at, old in self._places.items() if at in near and not (at == node and is_same)}
+                find = partial(Marks(near, known)._place, problem, grid, friction, tractions, status, node, inwards)
+                unread = [old.depth for old in known.values() if isinstance(old, MarkedPlace)]
+                place = MarkedPlace(find, max(unread, default=0) + 1)
                 # The places of 64 corners may follow from each other. Then they are read, and their values given free.
-                places[node] = place.read() if depth > 64 else place
-        if not fresh:
-            return self
-        bits = self._bits | {node: mark | self._bits.get(node, 0) for node, mark in fresh.items()}
-        places = {node: place for node, place in self._places.items() if node not in fresh} | places
-        return Marks(bits, {node: place for node, place in places.items() if not is_ambiguous(bits[node])})
+                places[node] = place.read() if place.depth > 64 else place
+        return Marks(bits, places)
 
     def _place(
         self,

@@ -376,7 +376,8 @@ def marks_left(before: Configuration, now: Configuration, interface: Interface, 
     They are those of an `interface`, the field `name` of a configuration.
     """
     at = slice(2 * MARKS.index(name), 2 * MARKS.index(name) + 2)
-    if not np.array_equal(now.rest[at], before.rest[at]):  # the pin, or a bush, was released: slip counts anew
+    # Where the pin, or a bush, was released, slip counts anew.
+    if now.rest is not before.rest and not np.array_equal(now.rest[at], before.rest[at]):
         return Marks()
     nodes, marks = interface.nodes, getattr(before, name)
     found: Marks = marks.left(now.status[nodes], now.slip[nodes], before.slip[nodes])
