@@ -64,6 +64,8 @@ def pieces(before: np.ndarray, after: np.ndarray, nearly_neat: bool) -> list[Pie
     """
     together = [P, Q, M]  # a moment that is left at no force by rounding would spin the pin
     for loads in (SCALING, together, [P, Q]) if nearly_neat else (together, [P, Q]):
+        if sum([before.item(load) * after.item(load) for load in loads]) >= 0.0:  # most steps are not cut
+            continue
         first, last = before[loads], after[loads]
         size = first @ last
         if size < 0.0 and np.abs(np.outer(first, last) - np.outer(last, first)).max() <= ROUNDED * abs(size):
