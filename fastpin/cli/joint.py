@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     if path is None and len(case.corners) > MOST_IN_MEMORY:
         words = f"is needed: the history has {len(case.corners):,} corners, more than {MOST_IN_MEMORY:,}"
         raise InputError("--output", words)
-    code, given = terminal.EXIT_OK, ["like", *(() if options.nodes is None else ("nodes",))]
+    code, given = terminal.EXIT_OK, ["resume", *(() if options.nodes is None else ("nodes",))]
     try:
         with Bar(len(case.corners), LOAD_POINTS) as bar, terminal.as_options(given):
             progress = progress_to(bar)

@@ -220,7 +220,7 @@ class JointWriter:
             See :func:`resume_joint`.
         """
         file = GrowingFile(path, layout.JOINT)
-        with file.again("like") as stored:
+        with file.again("resume") as stored:
             if stored.attrs["complete"]:
                 raise InputError(
                     str(path), f"holds a finished joint: there is nothing to go on with; try fastpin show {path}"
@@ -307,7 +307,7 @@ def _check_same(path: Path, task: JointTask, like: JointFile | None) -> None:
     }
     for name, is_same in same.items():
         if not is_same:
-            raise InputError("like", f"{path} was begun with {'other' if name[-1] == 's' else 'another'} {name}")
+            raise InputError("resume", f"{path} was begun with {'other' if name[-1] == 's' else 'another'} {name}")
 
 
 # -- the parts of a file -----------------------------------------------------------------------------------------------

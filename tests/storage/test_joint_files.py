@@ -275,7 +275,7 @@ def test_files_of_other_results_are_refused(path: Path, whole: bytes, tmp_path: 
         "other harmonics": CASE._replace(corners=CORNERS, harmonics=8),
     }
     for words, like in others.items():
-        assert str(refused(resume_joint, path, like)) == f"like: {path} was begun with {words}"
+        assert str(refused(resume_joint, path, like)) == f"resume: {path} was begun with {words}"
     with h5py.File(path, "r+") as file:
         file.attrs["format_version"] = 9
     assert "has a format that this version of fastpin can't read" in str(refused(load_joint, path))
@@ -309,7 +309,7 @@ def test_the_command_goes_on_with_a_file(tmp_path: Path, capsys: pytest.CaptureF
     other = tmp_path / "other.toml"
     other.write_text(SHEETS.replace("4e3", "5e3"))
     assert main(["joint", str(other), "--resume", str(stored)]) == 2
-    assert f"--like: {stored} was begun with other loads" in capsys.readouterr().err
+    assert f"--resume: {stored} was begun with other loads" in capsys.readouterr().err
     assert main(["joint", str(file), "--resume", str(stored)]) == 0
     whole = capsys.readouterr().out
     assert main(["joint", str(file)]) == 0
