@@ -99,6 +99,11 @@ class JointPlate:
             for key in ("supports", "moves", "holes", "loads"):
                 if getattr(self, key):
                     raise InputError(key, "has no meaning for an infinite plate; give an outline")
+        own = [*(part.name for part in self.outline), *(hole.name for hole in self.holes)]
+        for name in self.supports:
+            checks.known_name("supports", name, own)
+        for name in (name for load in self.loads for name in load.parts):
+            checks.known_name("loads", name, own)
 
     def __hash__(self) -> int:
         return hash((self.name, self.material, self.thickness, self.outline, self.holes, self.loads))
@@ -514,7 +519,7 @@ def _heads(field_: str, value: object) -> float:
     words = {"free": 0.0, "held": math.inf}
     if isinstance(value, str) and value in words:
         return words[value]
-    if value == math.inf:
+    if isinstance(value, float) and value == math.inf:
         return math.inf
     try:
         return checks.not_negative(field_, value)

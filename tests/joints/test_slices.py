@@ -14,7 +14,7 @@ from fastpin import figures, report
 from fastpin.assess import outputs
 from fastpin.joints import Clamp, Joint, JointPin, JointPlate, JointResult, SectionCrack, parse_joint, solve_joint
 from fastpin.joints.bending import SHEAR, beam, springs
-from fastpin.lugs.outline import rectangle
+from fastpin.lugs.outline import PartLoad, rectangle
 from fastpin.model.crack import CrackGrowth
 from tests.support.laps import ALUMINIUM, BETA, FORCE, SHEETS, STEEL, lap
 from tests.support.refusals import refused
@@ -206,6 +206,14 @@ def test_bad_slices_and_heads_are_refused(change: dict[str, Any], words: str) ->
             Joint(joint.plates, (replace(joint.pins[0], **change),))
 
     assert str(refused(make)) == words
+
+
+def test_only_own_parts_of_a_plate_are_held_and_loaded() -> None:
+    skin = lap((0.1, 0.1), 0.3).plates[0]
+    words = 'supports: must be "bottom", "right", "top" or "left", not "hole of p1"'
+    assert str(refused(replace, skin, supports={"left": "both", "hole of p1": "both"})) == words
+    on_hole = (PartLoad("sxx", ("hole of p1",), x=1.0),)
+    assert str(refused(replace, skin, loads=on_hole)) == words.replace("supports", "loads")
 
 
 def test_a_beam_needs_enough_slices() -> None:
