@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -56,6 +56,9 @@ from fastpin.storage.stored_joints import (
     shapes_of,
 )
 from fastpin.storage.writer import GrowingFile, WaitingRows, check_overwriting, clear_checkpoints, closing_file
+
+SAME = 1e-9
+"""Difference of two compliances of a hole by rounding."""
 
 FIELDS = {**layout.NODE_FIELDS, **layout.SLIP_FIELDS}
 """Arrays with node values of an interface, with their kinds."""
@@ -183,13 +186,18 @@ def stored_joint(path: str | Path) -> JointFile:
         See :func:`load_joint`.
     """
     with open_result(file_path("path", path), form=layout.JOINT) as file:
-        task, stored = read_task(file), file["solver"].attrs
-        corners = [dict(zip(task.joint.load_names, row, strict=True)) for row in task.values.tolist()]
-        crack = read_text("crack", text_of(stored.get("crack", "")))
-        pin, plate = (text_of(name) for name in stored["crack_at"]) if crack is not None else ("", "")
-        followed = None if crack is None else SectionCrack(pin, plate, crack)
-        fatigue = read_text("fatigue", text_of(stored.get("fatigue", "")))
-        return JointFile(task.joint, corners, text_of(stored["title"]), task.nodes, task.harmonics, fatigue, followed)
+        return _case_of(file, read_task(file))
+
+
+def _case_of(file: hdf5.Group, task: JointTask) -> JointFile:
+    """Read title and questions beside what is followed."""
+    stored = file["solver"].attrs
+    corners = [dict(zip(task.joint.load_names, row, strict=True)) for row in task.values.tolist()]
+    crack = read_text("crack", text_of(stored.get("crack", "")))
+    pin, plate = (text_of(name) for name in stored["crack_at"]) if crack is not None else ("", "")
+    followed = None if crack is None else SectionCrack(pin, plate, crack)
+    fatigue = read_text("fatigue", text_of(stored.get("fatigue", "")))
+    return JointFile(task.joint, corners, text_of(stored["title"]), task.nodes, task.harmonics, fatigue, followed)
 
 
 class JointWriter:
@@ -226,12 +234,13 @@ class JointWriter:
                     str(path), f"holds a finished joint: there is nothing to go on with; try fastpin show {path}"
                 )
             task = replace(read_task(stored), progress=progress)
-            _check_same(path, task, like)
-            size, groups = layout.count(stored["states"]), [stored["states"]]
-            groups += [stored["interfaces"][str(place)]["states"] for place in range(len(task.joint.sections))]
-            for group in groups:
-                for name in (name for name in group if name not in _SCALES):
-                    layout.check_rows(f"{group.name[1:]}/{name}", group[name], size)
+            _check_same(path, _case_of(stored, task), task, like)
+            size = layout.count(stored["states"])
+            _check_growing(stored["states"], shapes_of(task.joint), size)
+            for place in range(len(task.joint.sections)):
+                group = stored["interfaces"][str(place)]["states"]
+                numbers = (*layout.number_fields(group), *layout.HOLE_FIELDS, "loads", "residuals")
+                _check_growing(group, (*FIELDS, *numbers), size)
 
             def read(group: hdf5.Group) -> JointRestart | None:
                 found = _read_restart(group["restart/latest"], task)
@@ -250,6 +259,10 @@ class JointWriter:
         if not self.file.is_open:
             self.file.begin(lambda h5: _write_head(h5, self.task, self._attributes, holes))
             self.file.commit()
+        for place, hole in enumerate(holes):
+            matrix = self.file.h5[f"interfaces/{place}/matrix"][()]
+            if matrix.shape != hole.matrix.shape or not np.allclose(matrix, hole.matrix, rtol=0.0, atol=SAME):
+                raise InputError(str(self.file.path), "was begun with other compliances of its plates; start it again")
 
     def add(self, state: JointState) -> None:
         """Take a state, unless the file has it already. It is in the file after the next commit."""
@@ -291,12 +304,18 @@ class JointWriter:
         self._stored = max(self._stored, self._at)
 
 
-_SCALES = ("theta", "load_name", "residual_name")
-"""Arrays of ``states`` that don't grow."""
+def _check_growing(group: hdf5.Group, names: Iterable[str], size: int) -> None:
+    """Raise :class:`ValueError` if no state can be appended to these arrays of `size` states."""
+    for name in ("state", *names):
+        if name not in group:
+            raise ValueError(f"{group.name[1:]}/{name} is missing")
+        layout.check_rows(f"{group.name[1:]}/{name}", group[name], size)
+    if not np.array_equal(group["state"][()], np.arange(size)):
+        raise ValueError(f"{group.name[1:]}/state does not count the states")
 
 
-def _check_same(path: Path, task: JointTask, like: JointFile | None) -> None:
-    """Raise :class:`InputError` if a file does not follow the same joint as `like`."""
+def _check_same(path: Path, case: JointFile, task: JointTask, like: JointFile | None) -> None:
+    """Raise :class:`InputError` if a file, read as `case` and `task`, does not follow the same joint as `like`."""
     if like is None:
         return
     same = {
@@ -304,6 +323,9 @@ def _check_same(path: Path, task: JointTask, like: JointFile | None) -> None:
         "loads": task.joint == like.joint and np.array_equal(task.values, load_values(like.joint, like.corners)),
         "nodes": task.nodes == like.nodes,
         "harmonics": task.harmonics == like.harmonics,
+        "title": case.title == like.title,
+        "[fatigue]": case.fatigue == like.fatigue,
+        "[crack]": case.crack == like.crack,
     }
     for name, is_same in same.items():
         if not is_same:

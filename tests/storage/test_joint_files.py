@@ -248,6 +248,25 @@ def test_a_damaged_restart_is_described(
         resume_joint(path)
 
 
+@pytest.mark.parametrize(
+    ("damage", "reason"),
+    [
+        (lambda file: file["interfaces/0/states"].pop("edge"), "interfaces/0/states/edge is missing"),
+        (lambda file: file["states"].pop("moved"), "states/moved is missing"),
+        (lambda file: file["states/state"].__setitem__(0, 77), "states/state does not count the states"),
+        (lambda file: file["solver"].attrs.pop("harmonics"), "was begun with other compliances of its plates"),
+    ],
+)
+def test_a_file_that_cannot_grow_is_refused(path: Path, damage: Callable[[h5py.File], Any], reason: str) -> None:
+    with pytest.raises(Interrupted):
+        record_joint(LONGER._replace(harmonics=7), path, progress=stop_at(2))
+    with h5py.File(path, "r+") as file:
+        damage(file)
+    before = path.read_bytes()
+    assert reason in str(refused(resume_joint, path))
+    assert path.read_bytes() == before
+
+
 def test_files_of_other_results_are_refused(path: Path, whole: bytes, tmp_path: Path) -> None:
     path.write_bytes(whole)
     one_pin = tmp_path / "one.h5"
@@ -273,6 +292,8 @@ def test_files_of_other_results_are_refused(path: Path, whole: bytes, tmp_path: 
         "other loads": CASE._replace(corners=CORNERS[:2]),
         "other nodes": CASE._replace(corners=CORNERS, nodes=32),
         "other harmonics": CASE._replace(corners=CORNERS, harmonics=8),
+        "another title": LONGER._replace(title="other"),
+        "another [fatigue]": LONGER._replace(fatigue=FatigueAssessment(over="cycle")),
     }
     for words, like in others.items():
         assert str(refused(resume_joint, path, like)) == f"resume: {path} was begun with {words}"
