@@ -78,9 +78,7 @@ def read_text(path: Path, most: int = MOST_BYTES) -> str:
     except (OSError, ValueError) as error:
         raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None
     if raw.startswith(HDF5_SIGNATURE):
-        raise CaseFileError(
-            str(path), [(0, "is a stored result (HDF5), not text; fastpin show prints it, with --record as a page")]
-        )
+        raise CaseFileError(str(path), [(0, "is a stored result (HDF5), not text; fastpin show prints it")])
     if len(raw) > most:
         raise CaseFileError(str(path), [(0, f"is larger than {most:,} bytes")])
     try:

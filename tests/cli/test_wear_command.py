@@ -134,7 +134,7 @@ def test_a_page_of_the_life_is_written_at_once_or_from_its_file():
     found = recorded(page)
     assert [each["cycle"] for each in found["life"]["cycles"]] == [0, 1, 2, 3, 4, 5, 6, 8, 10, 12]
     assert (found["case"]["title"], found["sentence"]) == ("Worn pin", "")
-    words = "is a stored result (HDF5), not text; fastpin show prints it, with --record as a page"
+    words = "is a stored result (HDF5), not text; fastpin show prints it"
     assert words in refused("live", "life.h5")
 
 
