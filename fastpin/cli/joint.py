@@ -15,10 +15,6 @@ from fastpin.errors import InputError
 from fastpin.model.checks import whole_number
 from fastpin.solver import Interrupted, SolveError
 
-JUDGED = "margins, fatigue and crack"
-"""Text of the progress bar after the solution."""
-
-
 MOST_IN_MEMORY = 10_000
 """Most corners of a history without a file. Each state of ten pins takes half a megabyte."""
 
@@ -72,7 +68,7 @@ def show(options: argparse.Namespace) -> int:
     if options.interface != "pin":
         raise InputError("--interface", "is for a bush that slips in its seat, not for a joint of several pins")
     case, result = storage.stored_joint(options.output), storage.load_joint(options.output)
-    _check(options, len(case.corners), {})
+    _check(options, max(len(result), 1), {})
     if not len(result):
         terminal.say("no state was reached")
     return _write(case, result, options) if len(result) else terminal.EXIT_OK
@@ -96,7 +92,8 @@ def _write(case: joints.JointFile, result: joints.JointResult, options: argparse
     last = min(options.at or len(result), len(result))
     draws = {options.plot: partial(figures.plot_joint, state=last - 1), options.shares: figures.plot_shares}
     files = [(name, partial(draw, result, title=case.title)) for name, draw in draws.items()]
-    with Bar(1.0, JUDGED) as bar:
+    asked = {"margins": True, "fatigue": case.fatigue, "crack": case.crack}
+    with Bar(1.0, ", ".join(name for name, how in asked.items() if how)) as bar:
         judged = report.joints.judged(result, case.fatigue, is_complete, progress_to(bar), case.crack)
     unit = report.joints.joint_units(result.joint)
     document = partial(outputs.whole_document, report.joints.JOINT, judged, unit, title=case.title)

@@ -17,7 +17,7 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.checks import instance, whole_number
 from fastpin.model.unit_systems import SI
 from fastpin.model.units import Unit
-from fastpin.report.joints import joint_units
+from fastpin.report.joints import joint_units, moved_by, pin_forces
 
 RING = 1.35
 """Outer radius of the ring that shows the hoop stress, in hole radii."""
@@ -57,9 +57,8 @@ def shares_of(result: JointResult) -> Plot:
     return Plot(
         lambda look: _draw_shares(look, result),
         instead=f"Line chart of the forces of {len(result.joint.pins)} pins over {len(result)} load points.",
-        caption="Force of each pin on its first plate, and friction of the faying surfaces, in size."
-        if result.joint.faying
-        else "Force of each pin on its first plate.",
+        caption="Force of each pin on its first plate, negative against its largest one"
+        + ("; friction of the faying surfaces, in size." if result.joint.faying else "."),
     )
 
 
@@ -88,7 +87,7 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
     largest = factor * max(float(np.abs(hoop).max()) for hoop in hoops) or 1.0
     norm = TwoSlopeNorm(0.0, -largest, largest)
     on_plates = [state.force(pin.name, plate.name) for plate in joint.plates for pin in joint.pins_of(plate)]
-    longest = max(*(float(np.hypot(*force)) for force in on_plates), 1e-300)
+    longest = max(float(np.hypot(*force)) for force in on_plates)
     for place, (plate, panel) in enumerate(zip(joint.plates, sheet.axes[:, 0], strict=True)):
         for part in plate.outline:
             z = size.factor * part.at(np.linspace(0.0, 1.0, 61))
@@ -99,13 +98,12 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
             panel.plot(z.real, z.imag, color="0.2", linewidth=1.2)
         for pin in joint.pins_of(plate):
             k = max(joint.places(pin.name, plate.name), key=lambda k: float(np.abs(hoops[k]).max()))
-            _draw_hole(panel, state, k, plate, theta, factor * hoops[k], norm, longest)
+            _draw_hole(panel, state, k, plate, theta, factor * hoops[k], norm, longest or 1.0)
         panel.set_aspect("equal")
         panel.set_xlim(size.factor * left, size.factor * right)
         panel.set_ylim(size.factor * bottom, size.factor * top)
         panel.set_ylabel(quantity("y", size.name))
-        moved = state.moved[place]
-        by = ", ".join(f"{size.factor * each:.3g}" for each in moved[:2])
+        by = ", ".join(f"{size.factor * each:.3g}" for each in moved_by(state, place))
         words = f", moved by {by} {size.name}" if plate.moves else ""
         words += f"; at each hole the most stressed of {plate.slices} slices" if plate.slices > 1 else ""
         panel.set_title(f"{plate.name}{words}", fontsize=8.5, loc="left", parse_math=False)
@@ -115,7 +113,7 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
     sheet.figure.colorbar(mappable, ax=panels, label=label, shrink=0.8, pad=0.02)
     looks = {"sticks": "black", "slips": COLOURS[1]}
     entries = [Line2D([], [], color=colour, label=label, linewidth=3.0) for label, colour in looks.items()]
-    words = f"largest force at this load point: {of_joint['force'].text(longest, 3)}"
+    words = f"load point {state.step + 1}, largest force: {of_joint['force'].text(longest, 3)}"
     sheet.legend([*entries, Line2D([], [], color="black", marker=">", label=words)], 3)
     sheet.head(look.title)
     return sheet
@@ -165,14 +163,12 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
     joint, states, points = result.joint, result.states.bare, 1.0 + np.arange(len(result))
     sheet = look.sheet([2.6])
     panel = sheet.axes[0, 0]
-    forces = {
-        pin.name: [float(np.hypot(*state.force(pin.name, pin.plates[0]))) for state in states] for pin in joint.pins
-    }
+    forces = {pin.name: pin_forces(result, pin) for pin in joint.pins}
     forces |= {
         f"friction {surface}": [float(np.hypot(*state.faying[k].force)) for state in states]
         for k, surface in enumerate(joint.faying)
     }
-    factor, unit = joint_units(joint)["force"].scale([max(values) for values in forces.values()])
+    factor, unit = joint_units(joint)["force"].scale([max(map(abs, values)) for values in forces.values()])
     few = len(points) <= 60
     for k, (_, values) in enumerate(forces.items()):
         style = line(k % MAX_NAMED, k // MAX_NAMED)
@@ -180,7 +176,8 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
     draw_grid(panel)
     panel.set_xlabel("load point")
     panel.set_ylabel(quantity("force" if joint.faying else "force of the pin", unit))
-    panel.set_ylim(bottom=0.0)
+    if min(map(min, forces.values())) >= 0.0:
+        panel.set_ylim(bottom=0.0)
     if few and len(points) < 12:
         panel.set_xticks(points)
     handles = [Line2D([], [], label=name, **line(k % MAX_NAMED, k // MAX_NAMED)) for k, name in enumerate(forces)]

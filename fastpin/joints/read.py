@@ -250,6 +250,9 @@ def _pins(source: CaseText, block: Section, plates: list[JointPlate | None]) -> 
     flexibility = _flexibility(block, material, diameter, through, plates)
     if flexibility is None:
         return [None]
+    if "heads" in block and flexibility != "beam":
+        block.report('heads: needs a pin that bends, flexibility = "beam"', "heads")
+        return [None]
     clamp = block.checked("clamp", _clamp)
     if clamp is None and "clamp" in block:
         return [None]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sized
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,6 +24,7 @@ from fastpin.joints import (
     SectionDamage,
     SectionMargin,
 )
+from fastpin.joints.parts import whole_name
 from fastpin.model import angles, ties
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.doubts import doubts_given
@@ -39,6 +40,9 @@ MOST_LISTED = 20
 SLIGHT = 1e-4
 """Friction across the load that is not printed, in parts of the limit: a path may keep as much of it by chance."""
 
+ROUNDED = 1e-12
+"""Displacement of a plate that is printed as 0, in hole radii."""
+
 UNRESOLVED = " (not resolved)"
 """Words beside a value that the nodes do not resolve."""
 
@@ -49,6 +53,8 @@ class Judged(NamedTuple):
     Attributes
     ----------
     result : JointResult
+    is_complete : bool
+        Whether the history has come to its end.
     margins : list of SectionMargin
     how : FatigueAssessment or None
     damages : list of SectionDamage
@@ -61,6 +67,7 @@ class Judged(NamedTuple):
     """
 
     result: JointResult
+    is_complete: bool
     margins: list[SectionMargin]
     how: FatigueAssessment | None
     damages: list[SectionDamage]
@@ -87,7 +94,7 @@ def judged(
     """Find the margins of the strengths of a result; if the history is complete its fatigue and crack, if asked for."""
     known = result.margins(fatigue.stretch(progress, 0.0, 0.4))
     unknown = "" if is_complete else "the history has not come to its end"
-    found = Judged(result, known, how, [], unknown, crack, unknown)
+    found = Judged(result, is_complete, known, how, [], unknown, crack, unknown)
     if how is not None and is_complete:
         try:
             found = found._replace(damages=result.assessed_fatigue(how, fatigue.stretch(progress, 0.4, 0.8)))
@@ -111,13 +118,20 @@ def describe(judged: Judged) -> str:
     joint = result.joint
     orders = ", ".join(dict.fromkeys(f"{order}" for order in result.harmonics))
     head = [
-        f"{len(joint.pins)} pins, {len(joint.plates)} plates, {result.nodes} nodes a contact, {orders} harmonics",
+        f"{_counted(joint.pins, 'pin')}, {_counted(joint.plates, 'plate')}, {result.nodes} nodes a contact, "
+        f"{orders} harmonics",
         "A loose pin stays in the middle of its holes until it touches. Secondary bending is not modelled.",
     ]
     if result.snaps:
         head.append(f"{result.snaps} times a nearly unloaded pin was released or snapped to a new place.")
+    if not judged.is_complete:
+        head.append(f"The history has not come to its end: {_counted(result, 'load point')} of it.")
     if not len(result):
         return "\n".join(head)
+    if any(min(pin_forces(result, pin)) < 0.0 for pin in joint.pins):
+        head.append("The force of a pin is negative where it points against its largest one.")
+    if any(plate.slices > 1 for plate in joint.plates):
+        head.append("That on a slice is negative where it points against the force on the whole plate.")
     parts = [*head, "", forces_table(result), "", largest_table(result)]
     if joint.faying:
         parts += ["", faying_table(result)]
@@ -127,7 +141,8 @@ def describe(judged: Judged) -> str:
 def forces_table(result: JointResult) -> str:
     """Return the loads, the displacements of plates that move, and the force of each pin on its first plate.
 
-    The friction of each faying surface follows, with its sign: the force on the first one of both plates.
+    The force has a sign, see :func:`pin_forces`. The friction of each faying surface follows, with its sign: the force
+    on the first one of both plates.
     """
     joint, states = result.joint, result.states.bare
     unit = joint_units(joint)
@@ -138,12 +153,12 @@ def forces_table(result: JointResult) -> str:
             columns.append(_column(name, values, unit["traction" if joint.is_stress(name) else "force"]))
     for place, plate in enumerate(joint.plates):
         for k, axis in enumerate("xy"):
-            values = [float(state.moved[place, k]) for state in states]
+            values = [float(moved_by(state, place)[k]) for state in states]
             if axis not in plate.moves and not plate.floats:
                 continue
             columns.append(_column(f"u {plate.name}.{axis}", values, unit["displacement"]))
     for pin in joint.pins:
-        values = [float(np.hypot(*state.force(pin.name, pin.plates[0]))) for state in states]
+        values = pin_forces(result, pin)
         columns.append(_column(f"{pin.name} on {pin.plates[0]}", values, unit["force"]))
         shares = [state.shares(pin.plates[0])[pin.name] for state in states]
         if not all(math.isnan(share) for share in shares):
@@ -168,7 +183,8 @@ def largest_table(result: JointResult) -> str:
     factor, label = unit["traction"].scale([row["hoop"] for row in rows])
     words = [f"{factor * row['hoop']:.5g}{'' if row['resolved'] else UNRESOLVED}" for row in rows]
     columns.append(("largest hoop", label, words))
-    columns.append(("at", "deg", [f"{angles.from_bottom(row['hoop_angle']):z.1f}" for row in rows]))
+    at = [row["hoop_angle"] for row in rows]
+    columns.append(("at", "deg", ["-" if math.isnan(each) else f"{angles.from_bottom(each):z.1f}" for each in at]))
     columns.append(("load point", "", [str(row["hoop_step"]) for row in rows]))
     columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
     columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
@@ -237,6 +253,24 @@ def crack_lines(judged: Judged) -> list[str]:
     return ["", f"{at}, {crack.growth_line(judged.growth, over)}"]
 
 
+def pin_forces(result: JointResult, pin: JointPin) -> list[float]:
+    """Size of the force of a pin on its first plate at all load points, N; negative against the largest one."""
+    forces = np.array([state.force(pin.name, pin.plates[0]) for state in result.states.bare])
+    sizes = np.hypot(*forces.T)
+    along = forces @ forces[ties.top(sizes.tolist())]
+    return [float(size) for size in np.where(along < 0.0, -sizes, sizes)]
+
+
+def moved_by(state: JointState, place: int) -> np.ndarray:
+    """Displacement of a plate along x and y, m, shape (2,). Rounding is 0."""
+    moved = state.moved[place, :2]
+    return np.where(np.abs(moved) < ROUNDED * state.joint.radius, 0.0, moved)
+
+
+def _counted(items: Sized, name: str) -> str:
+    return f"{len(items)} {name}{'s' * (len(items) != 1)}"
+
+
 def _left_out(count: int, words: str) -> list[str]:
     return [f"  ... {count - MOST_LISTED} with {words} ..."] if count > MOST_LISTED else []
 
@@ -245,10 +279,14 @@ def contact_row(result: JointResult, place: int) -> dict[str, Any]:
     """What is largest of all states at one pin in one plate, SI.
 
     The slip is the longest path of a node from one load point to the next. Load points count from 1. Of a hole that is
-    never touched the hoop stress is that of the loads of the plate.
+    never touched the hoop stress is that of the loads of the plate. The force is negative where that on a slice points
+    against the force on the whole plate.
     """
     pin, plate = result.joint.sections[place]
-    forces = [float(np.hypot(*state.forces[place])) for state in result.states.bare]
+    forces = []
+    for state in result.states.bare:
+        own, whole = state.forces[place], state.force(pin.name, whole_name(plate.name))
+        forces.append(math.copysign(math.hypot(*own), -1.0 if own @ whole < 0.0 else 1.0))
     peaks, pressures, slips, touched, lost = [], [], [], None, 0.0
     for contact in result.states.section(place):
         peaks.append(contact.peak_hoop_stress("plate"))
@@ -261,7 +299,7 @@ def contact_row(result: JointResult, place: int) -> dict[str, Any]:
         "pin": pin.name,
         "plate": plate.name,
         "touched": touched,
-        "force": max(forces),
+        "force": max(forces, key=abs),
         "pressure": max(pressures),
         "hoop": peaks[hoop].value,
         "hoop_angle": peaks[hoop].angle,
@@ -360,7 +398,7 @@ CONTACT = (
     Output("peak_pressure", "traction", lambda at: _pressure(at.contact)),
     Output(
         "peak_hoop_stress", of=lambda at: at.contact.peak_hoop_stress("plate"),
-        parts=(Output("value", "traction"), Output("angle"), Output("resolved", "truth")),
+        parts=(Output("value", "traction"), Output("angle", optional=True), Output("resolved", "truth")),
     ),
     Output("dissipation", "energy", lambda at: at.contact.dissipation * at.plate.thickness),
     Output("slip", "displacement", lambda at: np.max(at.contact.slip_distance)),
@@ -375,7 +413,7 @@ LARGEST = (
     Output("touched", "whole", optional=True),
     Output("force", "force"),
     *outputs.numbers("pressure hoop", "traction"),
-    Output("hoop_angle"),
+    Output("hoop_angle", optional=True),
     Output("hoop_step", "whole"),
     Output("resolved", "truth"),
     Output("slip", "displacement"),
@@ -472,6 +510,7 @@ JOINT = (
             zip((each.name for each in judged.result.joint.plates), judged.result.harmonics, strict=True)
         ),
     ),
+    Output("complete", "truth", lambda judged: judged.is_complete),
     Output("snaps", "whole", lambda judged: judged.result.snaps),
     Output("seconds", of=lambda judged: judged.result.seconds),
     Output(

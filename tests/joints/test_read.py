@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
 
@@ -60,6 +61,7 @@ def test_values_for_each_plate_and_parts_of_an_outline_are_read() -> None:
         ('plates = ["sheet"]', 'plates = ["skin"]', 0, 'plates: must be "sheet", not "skin"'),
         ("friction = 0.2", "friction = { skin = 0.2 }", 19, 'friction: must be "sheet", not "skin"'),
         ('["A", "B"]', '["A"]', 13, "name: must name 2 pins, as many as at has points, not 1"),
+        ("friction = 0.2", 'heads = "free"', 19, 'heads: needs a pin that bends, flexibility = "beam"'),
         ("friction = 0.2", 'flexibility = "soft"', 19, 'must be "rigid", "tate-rosenfeld" or "beam", not "soft"'),
         ('material = "steel"', 'material = "stel"', 15, "material:"),
         ("[joint]", "[joints]", 4, "unknown section [joints]"),
@@ -102,7 +104,7 @@ def test_text_and_json_tell_the_same_numbers() -> None:
     judged = report.judged(solved())
     text, document = report.describe(judged), whole_document(report.JOINT, judged, {}, title="two bolts")
     assert "fatigue" not in text
-    assert "2 pins, 1 plates, 24 nodes a contact" in text
+    assert "2 pins, 1 plate, 24 nodes a contact" in text
     assert json.loads(json.dumps(document, allow_nan=False)) == document
     Draft202012Validator(json_schema("joint")).validate(document)
     first = document["states"][0]["contacts"][0]
@@ -142,6 +144,29 @@ def test_text_and_json_tell_the_same_lives_and_margins() -> None:
     assert words in _words(report.describe(asked))
     unfinished = report.judged(judged.result, case.fatigue, is_complete=False)
     assert "fatigue: not known, the history has not come to its end" in report.describe(unfinished)
+    assert "The history has not come to its end: 2 load points of it." in report.describe(unfinished)
+    assert [whole_document(report.JOINT, each, {})["complete"] for each in (judged, unfinished)] == [True, False]
+
+
+def test_the_force_of_a_pin_is_negative_against_its_largest_one() -> None:
+    result = solve_joint(parse_joint(SHEETS).joint, [{"A.x": 4e3}, {"A.x": -2e3, "B.y": -1e3}], nodes=16)
+    text = _words(report.describe(report.judged(result)))
+    assert "The force of a pin is negative where it points against its largest one." in text
+    panel = figures.plot_shares(result).axes[0]
+    np.testing.assert_allclose(panel.lines[0].get_ydata(), [4.0, -2.0], rtol=1e-5)
+    np.testing.assert_allclose(panel.lines[1].get_ydata(), [0.0, 1.0], atol=1e-5)
+
+
+def test_a_joint_without_a_stress_is_told_and_drawn() -> None:
+    result = solve_joint(parse_joint(SHEETS).joint, [{"A.x": 0.0}], nodes=16)
+    judged = report.judged(result)
+    assert "never 0 0 0 - 1 0 0" in _words(report.describe(judged))
+    document = whole_document(report.JOINT, judged, {}, title="")
+    Draft202012Validator(json_schema("joint")).validate(document)
+    assert document["largest"][0]["hoop_angle"] is None
+    (legend,) = figures.plot_joint(result).legends
+    assert legend.get_texts()[-1].get_text() == "load point 1, largest force: 0 N"
+    assert figures.plot_shares(result).axes[0].get_ylim()[0] == 0.0
 
 
 def test_figures_are_drawn(tmp_path: Path) -> None:
@@ -158,7 +183,7 @@ def test_the_command_solves_a_file(tmp_path: Path, capsys: pytest.CaptureFixture
     out = tmp_path / "out.json"
     assert main(["joint", str(tmp_path / "joint.toml"), "--json", str(out), "--nodes", "16"]) == 0
     printed = capsys.readouterr().out
-    assert printed.startswith("two bolts\n2 pins, 1 plates, 16 nodes a contact")
+    assert printed.startswith("two bolts\n2 pins, 1 plate, 16 nodes a contact")
     assert json.loads(out.read_text())["nodes"] == 16
 
 
