@@ -64,7 +64,7 @@ class JointPlate:
     slices : int
         Number of equal slices across the thickness, each with a contact of its own with every pin. They are called
         "name.1" and so on, in the order of the plates of a pin, and move together. In a plate with one pin every slice
-        stretches by itself, as far as its supports. With several pins all slices stretch alike, but for the contacts.
+        stretches by itself, as far as its supports. With several pins all slices stretch alike; only contacts differ.
 
     Raises
     ------
