@@ -30,9 +30,9 @@ def joint_of(result: JointResult, state: int = -1) -> Plot:
     """Draw every plate with its holes at one state: hoop stress, contact, and the force of each pin.
 
     The ring round a hole shows the hoop stress on its edge. Thick arcs on the edge are in contact: stick is black, slip
-    is orange. Arrows are the forces of the pins on the plate. Of slices, the
-    one with the largest hoop stress is drawn at each hole. Lengths are in millimetres, to scale. `state` is the
-    number of the state, from 0; negative numbers count from the end.
+    is orange. Arrows are the forces of the pins on the plate. At each hole the slice with the largest hoop stress is
+    drawn. Lengths are in millimetres, to scale. `state` is the number of the state, from 0; negative numbers count from
+    the end.
     """
     instance("result", result, JointResult, "a JointResult")
     if not len(result):

@@ -255,10 +255,18 @@ def crack_lines(judged: Judged) -> list[str]:
 
 def pin_forces(result: JointResult, pin: JointPin) -> list[float]:
     """Size of the force of a pin on its first plate at all load points, N; negative against the largest one."""
-    forces = np.array([state.force(pin.name, pin.plates[0]) for state in result.states.bare])
-    sizes = np.hypot(*forces.T)
-    along = forces @ forces[ties.top(sizes.tolist())]
-    return [float(size) for size in np.where(along < 0.0, -sizes, sizes)]
+    forces = _forces(result, pin.name, pin.plates[0])
+    return _signed(forces, forces[ties.top(np.hypot(*forces.T).tolist())])
+
+
+def _forces(result: JointResult, pin: str, plate: str) -> np.ndarray:
+    """Force of a pin on a plate with all its slices, or on one slice, at all states, N, shape (states, 2)."""
+    return np.array([state.forces for state in result.states.bare])[:, result.joint.places(pin, plate)].sum(axis=1)
+
+
+def _signed(forces: np.ndarray, along: np.ndarray) -> list[float]:
+    """Sizes of forces (states, 2), negative where they point against `along`."""
+    return [float(size) for size in np.where((forces * along).sum(axis=1) < 0.0, -1.0, 1.0) * np.hypot(*forces.T)]
 
 
 def moved_by(state: JointState, place: int) -> np.ndarray:
@@ -283,10 +291,7 @@ def contact_row(result: JointResult, place: int) -> dict[str, Any]:
     against the force on the whole plate.
     """
     pin, plate = result.joint.sections[place]
-    forces = []
-    for state in result.states.bare:
-        own, whole = state.forces[place], state.force(pin.name, whole_name(plate.name))
-        forces.append(math.copysign(math.hypot(*own), -1.0 if own @ whole < 0.0 else 1.0))
+    forces = _signed(*(_forces(result, pin.name, name) for name in (plate.name, whole_name(plate.name))))
     peaks, pressures, slips, touched, lost = [], [], [], None, 0.0
     for contact in result.states.section(place):
         peaks.append(contact.peak_hoop_stress("plate"))

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -203,7 +204,7 @@ class StoredJointStates(JointStates):
         rows = {name: array[np.asarray(places)] for name, array in self._rows.items()}
         return _read_states(self._task, rows, list(zip(*sections, strict=True)))
 
-    @property
+    @cached_property
     def bare(self) -> list[JointState]:
         """The states without their contacts."""
         return _read_states(self._task, self._rows, [()] * len(self))
