@@ -65,14 +65,15 @@ def test_many_nodes_have_the_states_of_few(
     joint = joint_of(clearances, friction)
     few, many = (solved(monkeypatch, joint, count) for count in (1_000, 0))
     assert many.snaps == few.snaps
-    for one, other in zip(few, many, strict=True):
-        np.testing.assert_allclose(other.forces, one.forces, atol=1e-9 * FORCE)
+    for corner, (one, other) in enumerate(zip(few, many, strict=True)):
+        near = 1e-13 / system.CENTRING if few.snaps and corner > 0 else 1e-9  # beyond a snap springs have placed a pin
+        np.testing.assert_allclose(other.forces, one.forces, atol=near * FORCE)
         for contact, same in zip(one.contacts, other.contacts, strict=True):
             size = contact.pressure.max()
             np.testing.assert_array_equal(same.status, contact.status)
-            np.testing.assert_allclose(same.pressure, contact.pressure, atol=1e-9 * size)
-            np.testing.assert_allclose(same.shear, contact.shear, atol=1e-9 * size)
-            np.testing.assert_allclose(same.slip, contact.slip, atol=1e-9 * UNIT)
+            np.testing.assert_allclose(same.pressure, contact.pressure, atol=near * size)
+            np.testing.assert_allclose(same.shear, contact.shear, atol=near * size)
+            np.testing.assert_allclose(same.slip, contact.slip, atol=near * UNIT)
 
 
 def test_a_tableau_is_built_anew_where_it_has_lost_digits(monkeypatch: pytest.MonkeyPatch) -> None:
