@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -44,8 +46,39 @@ def random_joint(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]
     return joint, corners
 
 
+LAYOUTS = (
+    (0.0, 6.0),
+    (0.0, 5.0 - 0.5j, 11.0 + 1.0j),
+    (0.0, 5.0, 5.0j, 5.0 + 5.0j),
+    (0.0, 5.0, 10.0, 15.0, 20.0),
+    (0.0, 5.0, 10.0, 5.0j, 5.0 + 5.0j, 10.0 + 5.0j),
+)
+"""Places of two to six pins, in rows and patterns."""
+
+
+def random_straps(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]]]:
+    """Two to six pins in straps, in single or double shear: all fits, loads of pins and straps, also reversed ones."""
+    layout = LAYOUTS[rng.integers(5)]
+    (left, right), y = (-4.0, float(np.real(layout).max()) + 4.0), (-5.0, 9.0)
+    skin = JointPlate("skin", MATERIALS[0], 1.0, rectangle((left - 4.0, right), y), {"left": "both"})
+    strap = JointPlate("strap", MATERIALS[1], 0.6, rectangle((left, right + 4.0), y), {"right": "both"}, moves="x")
+    plates = (skin, strap) if rng.random() < 0.5 else (replace(strap, name="below"), skin, strap)
+    material = MATERIALS[rng.integers(3)]
+    unit = MaterialPair(material, MATERIALS[0], "stress").beta_star * FORCE
+    pins = []
+    for k, at in enumerate(layout):
+        fits = {plate.name: float(rng.choice([-0.1, 0.0, 0.02, 0.1, 0.3])) * unit for plate in plates}
+        friction, soft = float(rng.choice([0.0, 0.2, 0.6])), float(rng.choice([0.0, 0.2])) * unit / FORCE
+        pins.append(JointPin(f"p{k}", at, material, 1.0, tuple(fits), fits, friction, soft))
+    joint = Joint(plates, tuple(pins))
+    names = [name for name in joint.load_names if name.startswith("strap") or rng.random() < 0.3]
+    first, other = ({name: float(rng.uniform(-1.0, 1.0)) * FORCE for name in names} for _ in range(2))
+    back = {name: float(rng.choice([-1.0, 0.0])) * first[name] for name in names}
+    return joint, [first, back if rng.random() < 0.5 else other, first]
+
+
 def check_state(state: JointState) -> None:
-    """Check Coulomb's law, the unilateral contact and the balance of each pin, from the arrays alone."""
+    """Check Coulomb's law, the unilateral contact and the balance of pins and plates, from the arrays alone."""
     joint = state.joint
     for (pin, plate), contact in zip(joint.sections, state.contacts, strict=True):
         friction = pin.value_in("friction", plate.name)
@@ -59,16 +92,24 @@ def check_state(state: JointState) -> None:
         given = [state.load[f"{pin.name}.x"], state.load[f"{pin.name}.y"]]
         # Springs that hold loose pins take 1e-6 of a displacement.
         np.testing.assert_allclose(state.forces[places].sum(axis=0), given, atol=1e-4 * FORCE)
+    for plate in joint.plates:
+        passed = sum(force for (_, of), force in zip(joint.sections, state.forces, strict=True) if of is plate)
+        for surface, at in zip(joint.faying, state.faying, strict=True):
+            passed = passed + at.force * ((surface.plate == plate.name) - (surface.other == plate.name))
+        for place, axis in enumerate("xy"):
+            if plate.moves in ("free", axis):
+                assert abs(passed[place] + state.load.get(f"{plate.name}.{axis}", 0.0)) <= 1e-4 * FORCE
     for surface, at in zip(joint.faying, state.faying, strict=True):
         assert np.hypot(*at.force) <= 1.02 * surface.clamp.limit + 1e-4 * FORCE
     assert max(state.residuals.values()) <= 1e-9
 
 
 @pytest.mark.gate
-def test_random_joints_meet_all_conditions_or_are_refused() -> None:
+@pytest.mark.parametrize(("draw", "count"), [(random_joint, 6), (random_straps, 2)])
+def test_random_joints_meet_all_conditions_or_are_refused(draw: Callable[..., Any], count: int) -> None:
     refused, tried = 0, 0
-    for seed in seeds(12):
-        joint, corners = random_joint(np.random.default_rng(seed))
+    for seed in seeds(count):
+        joint, corners = draw(np.random.default_rng(seed))
         tried += 1
         try:
             result = solve_joint(joint, corners, nodes=24, harmonics=6)
