@@ -256,6 +256,14 @@ def test_other_machines_skip_what_does_not_run_and_count_the_rest(project: Path)
     assert all(line.endswith("tests/model -x") for line in tests)
 
 
+def test_other_machines_leave_out_the_kernels_of_this_one(project: Path) -> None:
+    done = run(project, "other-machines", "--types", "Prescott,Haswell,-own", "--list")
+    assert done.stdout.splitlines()[-2:] == [
+        "Prescott       ",
+        "Haswell        skipped: the machine takes these kernels anyway.",
+    ]
+
+
 def test_other_machines_fail_where_a_run_fails(project: Path) -> None:
     done = run(project, "other-machines", "--types", "Prescott", FAIL="3")
     assert (done.returncode, len(log(project))) == (1, 5)
