@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("case")
 CASE = f"""{STEEL_IN_LAMINATE}[[load]]
 P = [2e3, 1e3, 0]
 [solve]
-nodes = 61
+nodes = 31
 [strength]
 criterion = "tsai-wu"
 distance = 0.5e-3
@@ -32,7 +32,7 @@ HEAD = "strength ratio {:.4g} by tsai-wu 500 um from the edge, the least of 3 ke
 def test_a_case_with_a_strength_has_its_ratio_and_its_load_at_failure():
     """tests/whole/test_agreement.py holds the outputs against each other."""
     case = fastpin.read_case("case.toml")
-    states = fastpin.solve(case.problem, case.history, nodes=61)
+    states = fastpin.solve(case.problem, case.history, nodes=31)
     found = damage.joint_strength(states[0], "tsai-wu", distance=0.5e-3)
     assert found.least_ratio < damage.joint_strength(states[1], "tsai-wu", distance=0.5e-3).least_ratio
     shown = printed("run", "case.toml").splitlines()
@@ -40,7 +40,7 @@ def test_a_case_with_a_strength_has_its_ratio_and_its_load_at_failure():
     assert f"1 of {found.least_ratio:.3g}" in next(each for each in shown if "plate: first ply by tsai-wu" in each)
     assert lines[0].startswith(HEAD.format(found.least_ratio))
     assert f"ply of {found.ply_angle:g} deg by {found.ply_mode}, {found.joint_mode}" in lines[0]
-    options = {"over": "history", "nodes": 61}
+    options = {"over": "history", "nodes": 31}
     failure = assess.failure_load(case.problem, case.history, "tsai-wu", distance=0.5e-3, **options)
     assert lines[1].startswith(f"load at failure: {failure.factor:.4g} times all loads; load point 1; at ")
     said("run", "case.toml", "-o", "case.h5", "--json", "case.json")
