@@ -25,7 +25,7 @@ from tqdm import tqdm
 import fastpin
 from fastpin.figures import style
 from fastpin.published import records as drawing
-from fastpin.storage import store
+from fastpin.storage import store, stored
 from fastpin.storage.recording import record
 
 RESULTS = Path(__file__).with_name("results")
@@ -120,7 +120,7 @@ def main() -> None:
         began = time.process_time()
         rows = follow(options.corners, options.nodes, options.keep, path)
         processor = time.process_time() - began
-        states = store.load_points(path).size
+        states = stored.load_points(path).size
         last = store.load(path, states=[states - 1])[0]
     columns = dict(zip(NAMES, np.array(rows).T, strict=True))
     begun = columns["corners"] > 0.01 * options.corners

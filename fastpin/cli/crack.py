@@ -20,8 +20,9 @@ from fastpin.model.units import from_units, units
 
 def run(options: argparse.Namespace) -> int:
     """Print the growth of a crack, at one place or where a crack grows fastest, and draw it."""
-    case, held = storage.stored_case(options.result), storage.held_in_file.HeldInFile(options.result)
-    stops = CrackStops.of(len(case.history), held.result.cycles, held.between, options.spectrum)
+    with storage.stored.StoredResult(options.result) as stored:
+        case = stored.case
+        stops = CrackStops.of(len(case.history), stored.result.cycles, stored.between, options.spectrum)
     check_outputs({"--output": options.output, "--csv": options.csv, "--json": options.json}, figures=("--output",))
     try:
         with Bar(1, QUESTION.bar) as bar:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 
 from fastpin import assess, casefile, figures, report, studies
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import EXIT_OK, EXIT_READING, as_options, check_outputs, say, write_outputs
+from fastpin.cli.terminal import EXIT_OK, EXIT_READING, as_options, check_outputs, write_outputs
 
 
 def run(options: argparse.Namespace) -> int:
@@ -27,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
         (options.csv, lambda path: assess.outputs.write_csv([report.identify.loop_curve(found)], path)),
         (options.plot, lambda path: figures.plot_identified(found, path, case.title)),
     ]
-    code = write_outputs(files, options.json, lambda: report.identify.document(found, case.title))
-    if options.json != "-":
-        say(*([case.title, ""] if case.title else []), *report.identify.text(found).split("\n"))
+    head = [case.title, ""] if case.title else []
+    document = partial(report.identify.document, found, case.title)
+    code = write_outputs(files, options.json, document, lambda: [*head, *report.identify.text(found).split("\n")])
     return code or (EXIT_OK if all(each.value > 0.0 for each in found.frictions) else EXIT_READING)

@@ -16,24 +16,38 @@ from fastpin.model.units import from_units
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draw one kind of figure of a stored result."""
-    is_text = options.result.suffix.lower() == ".toml"
-    if options.kind is None:
-        options.kind = "sketch" if is_text else "scar" if storage.holds_wear(options.result) else "tractions"
-    is_case = is_text and "case" in KINDS[options.kind].sources
-    _check(options, is_case)
+    """Draw one kind of figure of a stored result, or of a case file."""
+    if options.result.suffix.lower() == ".toml":
+        options.kind = options.kind or "sketch"
+        _check(options, "case" in KINDS[options.kind].sources)
+        return _draw(casefile.read_case(options.result), options)
+    with storage.stored.StoredResult(options.result) as stored:
+        options.kind = options.kind or ("scar" if stored.is_life else "tractions")
+        _check(options, False)
+        return _draw(stored, options)
+
+
+def _draw(shown: Case | storage.stored.StoredResult, options: argparse.Namespace) -> int:
+    """Draw the figure, and say which part of the result it shows."""
     figure = Path(f"{options.kind}.png") if options.output is None else options.output
-    case = casefile.read_case(options.result) if is_case else None
-    title = "" if case is None else case.title
-    if case is None:
-        stored = storage.stored_case(options.result)
-        title = stored.title
-        if options.depth is not None and options.kind != "profile":  # which takes radii
-            options.depth = from_units(options.depth, "length", stored.problem.unit_system)
-    if options.interface == "seat":
-        title = seat_title(title)
+    case = shown if isinstance(shown, Case) else shown.case
+    if options.depth is not None and options.kind != "profile":  # which takes radii
+        options.depth = from_units(options.depth, "length", case.problem.unit_system)
+    title = seat_title(case.title) if options.interface == "seat" else case.title
     check_outputs({"--output": figure, "--csv": options.csv}, figures=("--output",))
-    plot = _plot(options, case)
+    names = [*(name for name in KINDS[options.kind].options if name != "csv"), "after"]
+    given = {name: value for name in names if (value := getattr(options, name)) is not None}
+    progress_bar = Bar(1.0, "damage of the spectrum")
+    if isinstance(shown, Case):
+        subject = figures.states.Subject(shown)
+    elif options.interface == "seat":
+        subject = figures.states.Subject(seat_of(shown))
+    else:
+        subject = figures.states.stored_subject(shown, progress_to(progress_bar))
+    with as_options(given), progress_bar:  # the bar moves for the damage of a spectrum only
+        plot = figures.plotting.plot_of(options.kind, subject, **given)
+    say(*plot.notes)
+    say(*(f"note: {doubt}" for doubt in plot.doubts), file=sys.stderr)
     numbers = [(options.csv, plot.write_numbers)] if plot.curves else []
     code = write_files([(figure, lambda path: plot.save(path, title)), *numbers])
     if code == 0:
@@ -58,32 +72,14 @@ def _check(options: argparse.Namespace, is_case: bool) -> None:
             raise InputError(flag(name), f"has no effect on {options.kind}; it is for {kinds_with(name)}")
 
 
-def _plot(options: argparse.Namespace, case: Case | None) -> figures.sheet.Plot:
-    """Return the figure of a case or a stored result, and say which part of the result it shows."""
-    names = [*(name for name in KINDS[options.kind].options if name != "csv"), "after"]
-    given = {name: value for name in names if (value := getattr(options, name)) is not None}
-    progress_bar = Bar(1.0, "damage of the spectrum")
-    if case is not None:
-        subject = figures.states.Subject(case)
-    elif options.interface == "seat":
-        subject = figures.states.Subject(load_seat(options.result))
-    else:
-        subject = figures.states.stored_subject(options.result, progress_to(progress_bar))
-    with as_options(given), progress_bar:  # the bar moves for the damage of a spectrum only
-        plot = figures.plotting.plot_of(options.kind, subject, **given)
-    say(*plot.notes)
-    say(*(f"note: {doubt}" for doubt in plot.doubts), file=sys.stderr)
-    return plot
-
-
 def seat_title(title: str) -> str:
     """Return the title of a case with words that tell the contact in the seat from the contact of the pin."""
     return f"{title}, seat of the bush" if title else "seat of the bush"
 
 
-def load_seat(path: Path) -> solver.Result:
+def seat_of(stored: storage.stored.StoredResult) -> solver.Result:
     """Return the contact of the bush in its seat, of a stored result. Without one raise :class:`InputError`."""
-    seat = None if storage.holds_wear(path) else storage.load(path).seat
+    seat = None if stored.is_life else stored.whole().seat
     if seat is None:
-        raise InputError("--interface", f"{path}: the joint has no seat of a bush that slips (bonded = false)")
+        raise InputError("--interface", f"{stored.path}: the joint has no seat of a bush that slips (bonded = false)")
     return seat

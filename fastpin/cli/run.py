@@ -17,7 +17,7 @@ from fastpin import assess, casefile, figures, live, report, solver, storage
 from fastpin.assess.margins import margin_lines
 from fastpin.cli import joint, terminal, wear
 from fastpin.cli.options import literal
-from fastpin.cli.plot import load_seat, seat_title
+from fastpin.cli.plot import seat_of, seat_title
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.errors import InputError, ReadingError
 from fastpin.kernels import first
@@ -78,7 +78,9 @@ def run(options: argparse.Namespace) -> int:
 
 def resume(options: argparse.Namespace) -> int:
     """Continue a run that ended early, and write its states."""
-    case = _stored_case(options)
+    case = storage.stored_case(options.output)
+    _check_outputs(options)
+    _check_shown(case, options)
     with Bar(len(case.history), LOAD_POINTS) as progress_bar:
         ended = _ending(lambda: storage.resume(options.output, progress_to(progress_bar)))
     return _write_stored(case, options, ended)
@@ -86,47 +88,43 @@ def resume(options: argparse.Namespace) -> int:
 
 def show(options: argparse.Namespace) -> int:
     """Print and draw a stored result of one pin or of a joint, or print a stored life of wear."""
-    if storage.holds_joint(options.output):
-        return joint.show(options)
-    terminal.check_outputs({"--shares": options.shares}, ("--shares",))
-    for name in ("at", "shares"):
-        if getattr(options, name) is not None:
-            raise InputError(terminal.flag(name), "is for the result of a joint of several pins")
-    if storage.holds_wear(options.output):
-        return wear.show(options)
-    case = _stored_case(options)
+    with storage.stored.StoredResult(options.output) as stored:
+        if stored.is_joint:
+            return joint.show(options)
+        terminal.check_outputs({"--shares": options.shares}, ("--shares",))
+        for name in ("at", "shares"):
+            if getattr(options, name) is not None:
+                raise InputError(terminal.flag(name), "is for the result of a joint of several pins")
+        return wear.show(stored, options) if stored.is_life else _show(stored, options)
+
+
+def _show(stored: storage.stored.StoredResult, options: argparse.Namespace) -> int:
+    """Print and draw the result of one pin."""
+    shown: Case = stored.case
+    held: Held = stored
+    _check_outputs(options)
+    _check_shown(shown, options)
     if options.interface == "seat":
-        seat = load_seat(options.output)
-        shown = dataclasses.replace(case, problem=seat.problem, title=seat_title(case.title), fatigue=None)
-        code = RunReport(shown, Held(seat), None).write(options)
-    else:
-        code = _write_stored(case, options, None)
+        held = Held(seat_of(stored))
+        problem, title = held.result.problem, seat_title(shown.title)
+        shown = dataclasses.replace(shown, problem=problem, title=title, fatigue=None)
+    code = RunReport(shown, held, None).write(options)
     if options.json != "-":
-        _note_unfinished(case, options.output)
+        _note_unfinished(stored)
     return code
 
 
-def _stored_case(options: argparse.Namespace) -> Case:
-    """Return the case of a stored result, after a check of the options."""
-    case = storage.stored_case(options.output)
-    _check_outputs(options)
-    _check_shown(case, options)
-    return case
-
-
-def _note_unfinished(case: Case, path: Path) -> None:
+def _note_unfinished(stored: storage.stored.StoredResult) -> None:
     """Say that a stored run has not come to its end, how far it is, and why or how to continue it."""
-    last = storage.load(path, states=slice(-1, None))
-    if storage.lacks_error_bars(path):
+    if stored.lacks_error_bars:
         words = "no error bars: their run on the coarse grid has not ended"
-        terminal.say(f"note: {words}; continue with: fastpin resume {path}")
-    if last.complete:
+        terminal.say(f"note: {words}; continue with: fastpin resume {stored.path}")
+    if stored.result.complete:
         return
-    reached = f"{last[0].step + 1:,}" if len(last) else "0"
-    reason = storage.stored_error(path)
-    why = f": {reason}" if reason else ""
-    more = f"; {how}" if (how := way_on(path, reason)) else ""
-    terminal.say(f"note: unfinished, at corner {reached} of {len(case.history):,}{why}{more}")
+    reached = f"{stored.read([stored.points.size - 1])[0].step + 1:,}" if stored.points.size else "0"
+    why = f": {stored.error}" if stored.error else ""
+    more = f"; {how}" if (how := way_on(stored.path, stored.error)) else ""
+    terminal.say(f"note: unfinished, at corner {reached} of {len(stored.case.history):,}{why}{more}")
 
 
 def _ending(work: Callable[[], object]) -> solver.SolveError | solver.Interrupted | None:
@@ -223,7 +221,7 @@ def _check_outputs(options: argparse.Namespace) -> None:
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
     """Write the states of a stored run. Without a state, a file with this name belongs to another run."""
-    held = None if ended is not None and ended.result is None else storage.held_in_file.HeldInFile(options.output)
+    held = None if ended is not None and ended.result is None else storage.stored.StoredResult(options.output)
     return RunReport(case, held, ended).write(options)
 
 

@@ -59,17 +59,17 @@ def run(options: argparse.Namespace) -> int:
     return _write(result, options, case.title, trouble) or code
 
 
-def show(options: argparse.Namespace) -> int:
+def show(stored: storage.stored.StoredResult, options: argparse.Namespace) -> int:
     """Print the chosen cycles of a stored life of wear."""
-    path: Path = options.output
+    path, error = stored.path, stored.error
     for name in ("plot", "states", "cycles", "cycle_csv"):
         if getattr(options, name) is not None:
             raise InputError(
                 terminal.flag(name), f"is for the result of a run; fastpin plot {path} draws this life of wear"
             )
     terminal.check_outputs({"--json": options.json, "--record": options.record})
-    life, title, error = storage.load_wear(path), storage.stored_case(path).title, storage.stored_error(path)
-    code = _write(life, options, title, error)
+    life = storage.wear_files.life_of(stored)
+    code = _write(life, options, stored.case.title, error)
     if not life.complete and options.json != "-":
         why, how = f": {error}" if error else "", way_on(path, error)
         terminal.say(f"note: the life is unfinished{why}{f'; {how}' if how else ''}")

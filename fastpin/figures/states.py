@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,9 +27,8 @@ from fastpin.states.extremes import KeptStates, Side, find_extremes, marked_plac
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.storage.held import Held
-from fastpin.storage.held_in_file import HeldInFile
-from fastpin.storage.recording import stored_case
-from fastpin.storage.wear_files import holds_wear, load_wear
+from fastpin.storage.stored import StoredResult
+from fastpin.storage.wear_files import life_of
 from fastpin.wear_lives import WearResult
 
 NEARLY_ROUND = 340.0
@@ -392,7 +390,7 @@ class Subject:
     Parameters
     ----------
     shown : Result, State, sequence of State, WearResult, Problem or Case
-    held : Held, optional
+    held : StoredResult, optional
         The stored result of a run, of which `shown` is the result without its states. Only those that a figure shows
         are read.
     progress : callable, optional
@@ -405,7 +403,7 @@ class Subject:
     """
 
     def __init__(
-        self, shown: Shown, held: Held | None = None, progress: Callable[[float, float], None] | None = None
+        self, shown: Shown, held: StoredResult | None = None, progress: Callable[[float, float], None] | None = None
     ) -> None:
         self.life = shown if isinstance(shown, WearResult) else None
         self.shown = Result.of_life(shown) if isinstance(shown, WearResult) else shown
@@ -446,8 +444,7 @@ class Subject:
 
     def beside(self, name: str) -> Any:
         """Return the section of a stored case with this name, such as "fatigue"; None if it is not known."""
-        path = None if self._held is None else self._held.path
-        return None if path is None else beside_of(stored_case(path)).get(name)
+        return None if self._held is None else beside_of(self._held.case).get(name)
 
 
 def of_states(result: Sequence[State] | State) -> Subject:
@@ -460,12 +457,9 @@ def of_joint(joint: Problem | Case | Result) -> Subject:
     return Subject(joint)
 
 
-def stored_subject(path: Path, progress: Callable[[float, float], None] | None = None) -> Subject:
+def stored_subject(stored: StoredResult, progress: Callable[[float, float], None] | None = None) -> Subject:
     """Return the result of a run, or the life of wear, in a file. The progress is that of :class:`Subject`."""
-    if holds_wear(path):
-        return Subject(load_wear(path))
-    held = HeldInFile(path)
-    return Subject(held.result, held, progress)
+    return Subject(life_of(stored)) if stored.is_life else Subject(stored.result, stored, progress)
 
 
 def with_stored_cycles(subject: Subject) -> WearResult:

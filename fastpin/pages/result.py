@@ -18,6 +18,7 @@ from fastpin.pages.source import PageParts, Source, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
 from fastpin.pages.writing import check_page, write_page
 from fastpin.solver import Result
+from fastpin.storage.stored import StoredResult
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical
 from fastpin.version import __version__
@@ -79,25 +80,26 @@ def write_report(
         instance("about", about, About, "an About")
     if convergence is not None:
         instance("convergence", convergence, Convergence, "a Convergence")
-    if isinstance(result, Result):
-        source = Source.of_result(result, title)
-    elif isinstance(result, WearResult):
-        source = Source.of_life(result, title)
-    else:
-        file = file_path("result", result)
-        source = Source.of_file(file)
-        if case is None:
-            with contextlib.suppress(InputError, CaseFileError):  # the file is another case, or none
-                source = replace(source, case_text=_case_text(file.with_suffix(".toml"), source))
-    if source.life is not None and convergence is not None:
-        raise InputError("convergence", "has no effect on the report of a life of wear")
-    if case is not None:
-        source = replace(source, case_text=_case_text(case, source))
-        if source.path is None:  # a result in memory does not know how it is to be judged
-            given = parse_case(source.case_text, str(case), Path(case).parent)
-            source = replace(source, case=replace(source.case, **beside_of(given)))
-    named = replace(source.case, title=title or source.case.title, about=merged(source.case.about, about))
-    write_source(replace(source, case=named), target, convergence, progress)
+    with contextlib.ExitStack() as stack:
+        if isinstance(result, Result):
+            source = Source.of_result(result, title)
+        elif isinstance(result, WearResult):
+            source = Source.of_life(result, title)
+        else:
+            stored = stack.enter_context(StoredResult(file_path("result", result)))
+            source = Source.of_file(stored)
+            if case is None:
+                with contextlib.suppress(InputError, CaseFileError):  # the file is another case, or none
+                    source = replace(source, case_text=_case_text(stored.path.with_suffix(".toml"), source))
+        if source.life is not None and convergence is not None:
+            raise InputError("convergence", "has no effect on the report of a life of wear")
+        if case is not None:
+            source = replace(source, case_text=_case_text(case, source))
+            if source.path is None:  # a result in memory does not know how it is to be judged
+                given = parse_case(source.case_text, str(case), Path(case).parent)
+                source = replace(source, case=replace(source.case, **beside_of(given)))
+        named = replace(source.case, title=title or source.case.title, about=merged(source.case.about, about))
+        write_source(replace(source, case=named), target, convergence, progress)
 
 
 def write_source(

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from fastpin import storage
 from fastpin.assess.fatigue import SWT, fatigue_bodies, spectrum_damages
 from fastpin.assess.margins import HEADS, in_order, margin_rows, verdict
 from fastpin.assess.questions import QUESTIONS, all_margins
@@ -30,9 +29,10 @@ from fastpin.states import LoadCycle, State, choice
 from fastpin.states.cycles import Cycle
 from fastpin.states.margins import Margin, over_yield, walk_margins
 from fastpin.storage.held import Held
-from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
+from fastpin.storage.stored import StoredResult
+from fastpin.storage.wear_files import life_of
 from fastpin.studies.convergence import Convergence
 from fastpin.wear_lives import WearResult
 
@@ -82,7 +82,7 @@ class Source:
     life: WearResult | None = None
 
     @classmethod
-    def of_file(cls, path: Path) -> Source:
+    def of_file(cls, stored: StoredResult) -> Source:
         """Return a stored result or life of wear as a source. Its run may still be going on.
 
         Raises
@@ -90,7 +90,7 @@ class Source:
         InputError
             See :func:`fastpin.load`.
         """
-        stored, known, error = storage.stored_case(path), storage.provenance(path), storage.stored_error(path)
+        path, case, known = stored.path, stored.case, stored.origin
         origin = [("solved by", _named_versions(known))]
         told = {"created": "begun", "host": "machine", "platform": "system", "run": "name of the run"}
         origin += [(words, known[name]) for name, words in told.items() if name in known]
@@ -99,18 +99,17 @@ class Source:
             origin += [("file", path.name), ("SHA-256 of the file", _digest(path))]
         else:
             origin += [("run in the index", path.stem), ("SHA-256 of the result", hashlib.sha256(content).hexdigest())]
-        if storage.holds_wear(path):
-            source = cls.of_life(storage.load_wear(path), stored.title)
-            case = replace(source.case, about=stored.about, options=stored.options, fatigue=stored.fatigue)
+        if stored.is_life:
+            source = cls.of_life(life_of(stored), case.title)
+            case = replace(source.case, about=case.about, options=case.options, fatigue=case.fatigue)
             source.held.path = path
-            return replace(source, case=case, origin=origin, error=error)
+            return replace(source, case=case, origin=origin, error=stored.error)
         # The file holds the fractions of the states inside each step. Where they are equally spaced, their number gives
         # the id of the case file and of a sweep.
-        spaced = stored.options.changed(between=stored.options.fractions.size - 1)
-        is_spaced = np.array_equal(spaced.fractions, stored.options.fractions)
-        case = replace(stored, options=spaced) if is_spaced else stored
-
-        return cls(case, HeldInFile(path), origin, error, knows_options="run" in known)
+        spaced = case.options.changed(between=case.options.fractions.size - 1)
+        is_spaced = np.array_equal(spaced.fractions, case.options.fractions)
+        case = replace(case, options=spaced) if is_spaced else case
+        return cls(case, stored, origin, stored.error, knows_options="run" in known)
 
     @classmethod
     def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:

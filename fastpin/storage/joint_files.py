@@ -18,7 +18,6 @@
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -55,7 +54,7 @@ from fastpin.storage.stored_joints import (
     read_task,
     shapes_of,
 )
-from fastpin.storage.writer import GrowingFile, WaitingRows, check_overwriting, clear_checkpoints, closing_file
+from fastpin.storage.writer import FileWriter, check_overwriting
 
 SAME = 1e-9
 """Difference of two compliances of a hole by rounding."""
@@ -107,8 +106,9 @@ def record_joint(
         check_crack(joint, instance("crack", crack, SectionCrack, "a SectionCrack"), len(task.values))
         attributes |= {"crack": stored_text("crack", crack.how), "crack_at": [crack.pin, crack.plate]}
     check_overwriting(path, true_or_false("overwrite", overwrite))
-    writer = JointWriter(path, task, attributes)
-    with closing_file(writer):
+    writer = JointWriter(path)
+    writer.task, writer.attributes = task, attributes
+    with writer.closing():
         task.follow(writer)
     return load_joint(path)
 
@@ -137,21 +137,9 @@ def resume_joint(path: str | Path, like: JointFile | None = None, progress: RunP
     if like is not None:
         instance("like", like, JointFile, "a JointFile")
     writer, start = JointWriter.reopened(path, like, progress)
-    with closing_file(writer):
+    with writer.closing():
         writer.task.follow(writer, start)
     return load_joint(path)
-
-
-def holds_joint(path: str | Path) -> bool:
-    """Whether a result is that of a joint of several pins.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    with open_result(file_path("path", path), form=None) as file:
-        return bool(file.attrs["format"] == layout.JOINT)
 
 
 def load_joint(path: str | Path) -> JointResult:
@@ -200,20 +188,27 @@ def _case_of(file: hdf5.Group, task: JointTask) -> JointFile:
     return JointFile(task.joint, corners, text_of(stored["title"]), task.nodes, task.harmonics, fatigue, followed)
 
 
-class JointWriter:
+class JointWriter(FileWriter):
     """The recorder of a joint that writes to a file; see :class:`fastpin.joints.solving.JointRecorder`.
 
     Parameters
     ----------
     path : Path
+
+    Attributes
+    ----------
     task : JointTask
+        What is followed.
     attributes : dict
-        Title and questions.
+        Title and questions of a new file.
     """
 
-    def __init__(self, path: Path, task: JointTask, attributes: dict[str, Any]) -> None:
-        self.file, self.task, self._attributes = GrowingFile(path, layout.JOINT), task, attributes
-        self._waiting, self._at, self._stored = WaitingRows(self.file), 0, 0
+    FORM, NOTED = layout.JOINT, "restart/latest"
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self.task: JointTask
+        self.attributes: dict[str, Any] = {}
         self._restart: JointRestart | None = None
 
     @classmethod
@@ -227,13 +222,12 @@ class JointWriter:
         InputError
             See :func:`resume_joint`.
         """
-        file = GrowingFile(path, layout.JOINT)
-        with file.again("resume") as stored:
+        with (writer := cls(path)).again("resume") as stored:
             if stored.attrs["complete"]:
                 raise InputError(
                     str(path), f"holds a finished joint: there is nothing to go on with; try fastpin show {path}"
                 )
-            task = replace(read_task(stored), progress=progress)
+            writer.task = task = replace(read_task(stored), progress=progress)
             _check_same(path, _case_of(stored, task), task, like)
             size = layout.count(stored["states"])
             _check_growing(stored["states"], shapes_of(task.joint), size)
@@ -242,74 +236,50 @@ class JointWriter:
                 numbers = (*layout.number_fields(group), *layout.HOLE_FIELDS, "loads", "residuals")
                 _check_growing(group, (*FIELDS, *numbers), size)
 
-            def read(group: hdf5.Group) -> JointRestart | None:
-                found = _read_restart(group["restart/latest"], task)
-                return found if found.corner <= size else None
-
-            latest = read(stored) if "restart" in stored else None
-            noted = file.noted(read, "corner")
-            later = noted if latest is None or (noted is not None and noted.corner > latest.corner) else latest
-            writer = cls(path, task, {})
-            writer.file, writer._waiting, writer._restart = file, WaitingRows(file), later
-            writer._stored, writer._at = size, 0 if later is None else later.corner
-        return writer, later
+            writer._restart = writer.latest(stored, lambda group: _read_restart(group, task, size))
+            groups = ("states", *(f"interfaces/{place}/states" for place in range(len(task.joint.sections))))
+            writer._at = dict.fromkeys(groups, 0 if writer._restart is None else writer._restart.corner)
+        return writer, writer._restart
 
     def begin(self, holes: Sequence[HoleInPlate]) -> None:
         """Begin a new file, or go on in a reopened one."""
-        if not self.file.is_open:
-            self.file.begin(lambda h5: _write_head(h5, self.task, self._attributes, holes))
-            self.file.commit()
+        if not self.is_open:
+            self.begin_file(lambda h5: _write_head(h5, self.task, self.attributes, holes))
+            self.commit()
         for place, hole in enumerate(holes):
-            matrix = self.file.h5[f"interfaces/{place}/matrix"][()]
+            matrix = self.h5[f"interfaces/{place}/matrix"][()]
             if matrix.shape != hole.matrix.shape or not np.allclose(matrix, hole.matrix, rtol=0.0, atol=SAME):
-                raise InputError(str(self.file.path), "was begun with other compliances of its plates; start it again")
+                raise InputError(str(self.path), "was begun with other compliances of its plates; start it again")
 
     def add(self, state: JointState) -> None:
         """Take a state, unless the file has it already. It is in the file after the next commit."""
-        self._at += 1
-        if self._at > self._stored:
-            self._waiting.add(1, _rows_of(state))
+        self.put(_rows_of(state))
 
     def corner_reached(self, restart: JointRestart) -> None:
         """Commit after a long wait. Write a checkpoint if one is due."""
         self._restart = replace(restart, since=restart.since.copy())
-        now = time.monotonic()
-        if self._waiting.is_due(now):
-            self._commit()
+        self.note()
 
-        def write(group: h5py.Group) -> None:
-            self._commit()
-            _write_restart(group.create_group("restart/latest"), restart)
-
-        self.file.note(now, write)
+    def write_place(self, group: h5py.Group) -> None:
+        """Write the place from which the joint goes on."""
+        assert self._restart is not None
+        _write_restart(group, self._restart)
 
     def end(self, error: str | None) -> None:
         """End the file, with the message of an error if there is one."""
-        self._commit()
-        h5, restart = self.file.h5, self._restart
-        if restart is not None:
-            if "restart" in h5:
-                del h5["restart"]
-            _write_restart(h5.create_group("restart/latest"), restart)
-            layout.write_statistics(h5, {"snaps": restart.snaps, "seconds": restart.seconds})
-        self.file.end(restart is not None and restart.corner == len(self.task.values), error)
-        clear_checkpoints(self.file.path)
+        if self._restart is not None:
+            self.put_place()
+            layout.write_statistics(self.h5, {"snaps": self._restart.snaps, "seconds": self._restart.seconds})
+        self.end_file(self._restart is not None and self._restart.corner == len(self.task.values), error)
 
     def so_far(self) -> JointResult:
         """The result in the file."""
-        return load_joint(self.file.path)
-
-    def _commit(self) -> None:
-        self._waiting.commit()
-        self._stored = max(self._stored, self._at)
+        return load_joint(self.path)
 
 
 def _check_growing(group: hdf5.Group, names: Iterable[str], size: int) -> None:
     """Raise :class:`ValueError` if no state can be appended to these arrays of `size` states."""
-    for name in ("state", *names):
-        if name not in group:
-            raise ValueError(f"{group.name[1:]}/{name} is missing")
-        layout.check_rows(f"{group.name[1:]}/{name}", group[name], size)
+    layout.check_appendable(group, ("state", *names))
     if not np.array_equal(group["state"][()], np.arange(size)):
         raise ValueError(f"{group.name[1:]}/state does not count the states")
 
@@ -400,8 +370,8 @@ def _write_restart(group: h5py.Group, restart: JointRestart) -> None:
         group[name] = values
 
 
-def _read_restart(group: hdf5.Group, task: JointTask) -> JointRestart:
-    """Read the place to go on from.
+def _read_restart(group: hdf5.Group, task: JointTask, size: int) -> JointRestart:
+    """Read the place to go on from, in a file of so many states.
 
     Raises
     ------
@@ -422,7 +392,7 @@ def _read_restart(group: hdf5.Group, task: JointTask) -> JointRestart:
         if since[name].shape != shape or np.isinf(since[name]).any():
             raise ValueError(f"{name} of the restart does not fit the joint")
     return JointRestart(
-        whole_number("corner", as_python(group.attrs["corner"]), 1, len(task.values)),
+        whole_number("corner", as_python(group.attrs["corner"]), 1, min(size, len(task.values))),
         Configuration(**{name: array[0] for name, array in arrays.items()}),
         Since(**since), whole_number("snaps", as_python(group.attrs["snaps"]), 0),
         number("seconds", as_python(group.attrs["seconds"]), 0.0),

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import functools
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 from datetime import UTC, datetime
 from importlib import metadata
@@ -446,13 +446,13 @@ def cycle_rows(cycles: Sequence[Cycle]) -> Rows:
 
 
 def count(group: h5py.Group) -> int:
-    """Return the number of rows of ``/states`` or ``/cycles``."""
-    first = next((group[name] for name in ("state", "corner") if name in group), None)
+    """Return the number of rows of ``/states``, ``/cycles`` or ``/wear``."""
+    first = next((group[name] for name in ("state", "corner", "cycle") if name in group), None)
     return 0 if first is None else int(first.shape[0])
 
 
 def append(group: h5py.Group, rows: Rows) -> None:
-    """Append rows to ``/states`` or ``/cycles``."""
+    """Append rows to ``/states``, ``/cycles`` or ``/wear``."""
     size, old = len(next(iter(rows.values()))), count(group)
     if size == 0:
         return
@@ -518,16 +518,15 @@ def check_growing(file: h5py.File, nodes: int) -> None:
     check_states(file, nodes)
     if read_options(file).slip_sums != ("slip_distance" in file["states"]):
         raise ValueError("states/slip_distance and the option slip_sums don't fit")
-    names = {
-        "states": ("state", *state_rows(file["states"])),
-        "cycles": tuple(CYCLE_KINDS) if len(file["cycles"]) else (),
-    }
-    for part, arrays in names.items():
-        group = file[part]
-        size = count(group)
-        for name in arrays:
-            dataset = hdf5.dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
-            check_rows(f"{part}/{name}", dataset, size)
+    check_appendable(file["states"], ("state", *state_rows(file["states"])))
+    check_appendable(file["cycles"], CYCLE_KINDS if len(file["cycles"]) else ())
+
+
+def check_appendable(group: h5py.Group, names: Iterable[str]) -> None:
+    """Raise :class:`ValueError` if no row can be appended to these arrays of ``/states`` or ``/cycles``."""
+    for name in names:
+        dataset = hdf5.dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
+        check_rows(f"{group.name[1:]}/{name}", dataset, count(group))
 
 
 def check_rows(label: str, dataset: h5py.Dataset, size: int) -> None:

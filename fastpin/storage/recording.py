@@ -10,7 +10,6 @@ from typing import Unpack
 from fastpin.errors import InputError
 from fastpin.model import (
     About,
-    Case,
     CrackGrowth,
     FatigueAssessment,
     Grid,
@@ -27,10 +26,10 @@ from fastpin.solver import ArcError, ConvergenceError, Interrupted, Result, Solv
 from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, Unfit, as_history, check_options, check_start
-from fastpin.storage import files, hdf5, journal, layout
-from fastpin.storage.held_in_file import HeldInFile, provenance
-from fastpin.storage.store import is_unfinished, load, open_result, stored_task
-from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
+from fastpin.storage import files, journal
+from fastpin.storage.store import is_unfinished, load, stored_task
+from fastpin.storage.stored import StoredResult, stored_case
+from fastpin.storage.writer import FileRecorder, add_coarse, check_overwriting, coarse_of, log
 
 
 def record(
@@ -112,18 +111,19 @@ def record(
         check_halves(task, start)
     warn_of(doubts(problem, task.history, solve_options, grid), 2)
     beside = checked_beside(problem, {"fatigue": fatigue, "crack": crack, "strength": strength})
-    writer = FileRecorder(path, task, title, about, beside)
+    writer = FileRecorder(path)
+    writer.take(task, title, about, beside)
     writer.overwrite = overwrite
-    writer.check_overwriting()
+    check_overwriting(path, overwrite)
     writer.chosen_arc &= start is None
-    with closing_file(writer):
+    with writer.closing():
         if start is not None and start.restart is not None:
             task.branch(writer, start.restart, start.grid)
         else:
             task.follow(writer)
     if solve_options.error_bars:
         _record_coarse(path, task)
-    warn_of(HeldInFile(path).doubts(), 2)
+    warn_of(StoredResult(path).doubts(), 2)
 
 
 def _check_bars(options: SolveOptions, start: Result | None) -> None:
@@ -148,19 +148,20 @@ def _record_coarse(path: Path, task: Task) -> None:
 
     An earlier run on the coarse grid goes on. It has a file of its own until it ends.
     """
-    beside, run = coarse_of(path), provenance(path)["run"]
+    beside, run = coarse_of(path), StoredResult(path).origin["run"]
     journal.check_beside(beside)
     halves = replace(coarse_task(task, load(path, states=[]).grid), save_after=frozenset())
     try:
         with words_for_coarse(halves):
             if not (beside.is_file() and _title_of(beside) == run):
-                writer = FileRecorder(beside, halves, run, About())
-                with closing_file(writer):
+                writer = FileRecorder(beside)
+                writer.take(halves, run, About())
+                with writer.closing():
                     halves.follow(writer)
             elif is_unfinished(beside):
-                writer, restart = reopen(beside, task.progress)
+                writer, restart = FileRecorder.reopened(beside, task.progress)
                 assert halves.grid is not None
-                with closing_file(writer):
+                with writer.closing():
                     halves.continue_from(writer, restart, halves.grid)
     except SolveError as error:
         beside.unlink(missing_ok=True)
@@ -203,14 +204,14 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
     path = checks.file_path("path", path)
     checks.check_callable("progress", progress)
     files.check_exists(path)
-    if not journal.is_empty(path) and lacks_error_bars(path):
-        with open_result(path) as file:
+    if not journal.is_empty(path) and (stored := StoredResult(path)).lacks_error_bars:
+        with stored.opened() as file:
             task = replace(stored_task(file), progress=progress)
         _record_coarse(path, task)
         return
-    writer, restart = reopen(path, progress)
+    writer, restart = FileRecorder.reopened(path, progress)
     task = writer.task
-    with closing_file(writer):
+    with writer.closing():
         log.info("continuing from corner %d of %d", restart.corner, len(task.history))
         assert task.grid is not None
         try:
@@ -221,46 +222,4 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
             task.follow(writer, unfit=Unfit(task.grid, error))
     if task.options.error_bars:
         _record_coarse(path, task)
-    warn_of(HeldInFile(path).doubts(), 2)
-
-
-def lacks_error_bars(path: str | Path) -> bool:
-    """Whether the run of a file is finished, but the run on the coarse grid that gives its error bars is not.
-
-    :func:`resume` then continues the run on the coarse grid.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    with open_result(checks.file_path("path", path)) as file:
-        wanted = layout.read_options(file).error_bars and bool(file.attrs["complete"]) and "run" in file.attrs
-        return wanted and "coarse" not in file
-
-
-def stored_error(path: str | Path) -> str | None:
-    """Return the message of the error that ended a stored run early; None if no error did.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    with open_result(checks.file_path("path", path)) as file:
-        error = file.attrs.get("error")
-        return None if error is None else hdf5.text_of(error)
-
-
-def stored_case(path: str | Path) -> Case:
-    """Read the case of a stored result: problem, history, options, title, who made it for what, and its assessment.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    with open_result(checks.file_path("path", path)) as file:
-        problem, history, options = layout.read_problem(file), layout.read_history(file), layout.read_options(file)
-        title = hdf5.text_of(file["solver"].attrs.get("title", ""))
-        return Case(problem, history, options, title, layout.read_about(file), **layout.read_beside(file))
+    warn_of(StoredResult(path).doubts(), 2)

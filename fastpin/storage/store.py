@@ -20,7 +20,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model import checks
 from fastpin.model.case import checked_beside
-from fastpin.model.history import MAX_CORNERS, LoadHistory
+from fastpin.model.history import LoadHistory
 from fastpin.model.inputs import note_input
 from fastpin.solver.result import Restart, Result, with_error_bars
 from fastpin.solver.task import Task
@@ -137,7 +137,7 @@ def unpack(content: bytes, path: Path) -> Result:
         If the bytes are damaged.
     """
     with _opened(content, path) as file:
-        return _read(file, path, ALL, None)[0]
+        return read_result(file, path, ALL)[0]
 
 
 def unpack_sections(content: bytes, path: Path) -> dict[str, Any]:
@@ -193,7 +193,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
     else:
         checks.places_of("states", states, 0)
     with open_result(path, "states", "after") as file:
-        result, task = _read(file, path, states, after)
+        result, task = read_result(file, path, states, after)
     restart = result.restart
     if task is not None and restart is not None and restart.corner < len(task.history):
         # The file is closed by now: this may take long.
@@ -201,8 +201,8 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
     return result
 
 
-def _read(
-    file: hdf5.Group | packed.PackedGroup, path: Path, states: slice | Sequence[int], after: int | None
+def read_result(
+    file: hdf5.Group | packed.PackedGroup, path: Path, states: slice | Sequence[int], after: int | None = None
 ) -> tuple[Result, Task | None]:
     """Read a result, see :func:`load`. The task leads from its restart to the corner `after`; None without one."""
     problem, grid, history = layout.read_problem(file), layout.read_grid(file), layout.read_history(file)
@@ -274,31 +274,6 @@ def is_unfinished(path: Path) -> bool:
             return "run" in file.attrs and not file.attrs.get("complete", True)
     except InputError:
         return False
-
-
-def load_points(path: str | Path) -> np.ndarray:
-    """Return the load points of the states in a file: step + fraction, 1 at the first corner.
-
-    Raises
-    ------
-    InputError
-        See :func:`load`.
-    """
-    with open_result(checks.file_path("path", path)) as file:
-        points: np.ndarray = file["states/step"][()] + file["states/fraction"][()]
-        return points
-
-
-def places_between(path: str | Path, first: int, last: int) -> slice:
-    """Return the places of the states in a file from corner `first` to corner `last`, counted from 1.
-
-    Raises
-    ------
-    InputError
-        If a corner is no whole number. Also see :func:`load`.
-    """
-    first, last = checks.whole_number("first", first, 0, MAX_CORNERS), checks.whole_number("last", last, 0, MAX_CORNERS)
-    return slice(*np.searchsorted(load_points(path), [first, np.nextafter(last, np.inf)]).tolist())
 
 
 @contextmanager

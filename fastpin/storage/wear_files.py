@@ -7,7 +7,6 @@ on. A checkpoint stands beside the file, as beside that of a run.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Unpack
@@ -28,8 +27,9 @@ from fastpin.solver.task import as_history
 from fastpin.storage import files, hdf5, journal, layout
 from fastpin.storage.hdf5 import as_python, check_between, check_finite, dataset_of, numbers_of, text_of
 from fastpin.storage.restarts import read_restart, write_restart
-from fastpin.storage.store import load, open_result
-from fastpin.storage.writer import GrowingFile, check_overwriting, clear_checkpoints, closing_file
+from fastpin.storage.store import ALL, read_result
+from fastpin.storage.stored import StoredResult
+from fastpin.storage.writer import FileWriter, check_overwriting
 from fastpin.wear_lives import WearResult, WornCycle
 from fastpin.wear_lives.fat_cycles import Worn
 from fastpin.wear_lives.life import CyclesInMemory, FrictionRule, WearTask
@@ -138,7 +138,7 @@ def wear(
             return _resumed(WearFile(path, task, title, judged))
     writer = WearFile(path, task, title, judged)
     check_overwriting(path, overwrite)
-    with closing_file(writer):
+    with writer.closing():
         task.follow(writer)
     return load_wear(path)
 
@@ -166,15 +166,15 @@ def _in_memory(task: WearTask) -> WearResult:
 def _resumed(writer: WearFile) -> WearResult:
     """Continue the life in a file. A life without a stored cycle begins anew, with the title of the writer."""
     place, grid = writer.reopen()
-    with closing_file(writer):
+    with writer.closing():
         if place is None:
             writer.task.follow(writer)
         else:
             writer.task.go_on(writer, place, grid, writer.stored)
-    return load_wear(writer.file.path)
+    return load_wear(writer.path)
 
 
-class WearFile:
+class WearFile(FileWriter):
     """The recorder of a life of wear that writes to a file; see :class:`fastpin.wear_lives.life.WearRecorder`.
 
     Parameters
@@ -186,14 +186,12 @@ class WearFile:
         The section [fatigue] of the case, if it has one, by its name.
     """
 
-    def __init__(self, path: Path, task: WearTask, title: str, beside: Mapping[str, Any]) -> None:
-        self.file, self.task, self._title, self._beside = GrowingFile(path), task, title, beside
-        self._place: Worn | None = None  # the latest one, and whether the file has it
-        self._is_stored = True
+    PLACE, NOTED, UNIT = "wear/place", "place", "cycle"
 
-    @property
-    def _h5(self) -> h5py.File:
-        return self.file.h5
+    def __init__(self, path: Path, task: WearTask, title: str, beside: Mapping[str, Any]) -> None:
+        super().__init__(path)
+        self.task, self._title, self._beside = task, title, beside
+        self._place: Worn | None = None
 
     def reopen(self) -> tuple[Worn | None, Grid]:
         """Open the file of an unfinished life, and return the place from which it goes on, and its grid.
@@ -203,21 +201,19 @@ class WearFile:
         InputError
             If it is no such file, holds another life, or another process is writing to it.
         """
-        with self.file.again("resume") as stored:
-            _check_same(self.file.path, stored, self.task)
+        with self.again("resume") as stored:
+            _check_same(self.path, stored, self.task)
             grid = layout.read_grid(stored)
             layout.check_growing(stored, grid.size)
             for name, rows in _read_rows(stored, grid.size).items():
                 layout.check_rows(f"wear/{name}", stored["wear"][name], len(rows))
-            place = _read_place(stored["wear/place"], grid.size) if "place" in stored["wear"] else None
-            noted = self.file.noted(lambda group: _read_place(group["place"], grid.size), "cycle")
-            is_later = noted is not None and (place is None or noted.cycle > place.cycle)
-            return noted if is_later else place, grid
+            self._place = self.latest(stored, lambda group: _read_place(group, grid.size))
+            return self._place, grid
 
     @property
     def stored(self) -> int:
         """The last chosen cycle in the file; -1 without one."""
-        cycles = self._h5["wear/cycle"]
+        cycles = self.h5["wear/cycle"]
         return int(cycles[-1]) if len(cycles) else -1
 
     def begin(self, grid: Grid, force: float) -> None:
@@ -226,8 +222,8 @@ class WearFile:
         nodes = task.options.nodes if task.grid is None else grid.size
         attributes = {**layout.option_attributes(task.options), "nodes": nodes, "slip_sums": True, "title": self._title}
         attributes |= layout.beside_attributes(self._beside)
-        self.file.begin(lambda h5: layout.write_head(h5, task.problem, task.stored_history, grid, attributes))
-        group = self._h5.create_group("wear")
+        self.begin_file(lambda h5: layout.write_head(h5, task.problem, task.stored_history, grid, attributes))
+        group = self.h5.create_group("wear")
         group.attrs.update(law=task.wear.law, tolerance=task.wear.tolerance, chosen=np.array(task.wear.chosen))
         group["coefficients"] = task.coefficients(grid.theta)
         for name in DEPTHS:
@@ -239,56 +235,42 @@ class WearFile:
         kinds = dict.fromkeys(DEPTHS, "displacement") | dict.fromkeys(("dissipation", "removed"), "energy")
         for name, quantity in kinds.items():
             group[name].attrs["unit"] = unit[quantity]
-        self._place, self._is_stored = None, True
-        self.file.commit()
+        self._place = None
+        self.commit()
 
     def add(self, cycle: WornCycle, place: Worn, statistics: dict[str, float]) -> None:
         """Write a chosen cycle, and the place from which the life goes on, in one transaction."""
-        group, states = self._h5["wear"], layout.rows_of(cycle.states)
-        layout.append(self._h5["states"], {name: states[name] for name in layout.state_rows(self._h5["states"])})
-        for name in (*DEPTHS, *NUMBERS):
-            array = group[name]
-            array.resize(len(array) + 1, axis=0)
-            array[-1] = getattr(cycle, name)
-        layout.write_statistics(self._h5, statistics)
-        self._put_place(place)
-        self.file.commit()
-
-    def _put_place(self, place: Worn) -> None:
-        group = self._h5["wear"]
-        if "place" in group:
-            del group["place"]
-        _write_place(group.create_group("place"), place)
-        self._place, self._is_stored = place, True
+        states, wear = layout.rows_of(cycle.states), {**dict.fromkeys(DEPTHS, float), **NUMBERS}
+        self.put(
+            {
+                "states": {name: states[name] for name in layout.state_rows(self.h5["states"])},
+                "wear": {name: np.array([getattr(cycle, name)], dtype=kind) for name, kind in wear.items()},
+            }
+        )
+        layout.write_statistics(self.h5, statistics)
+        self._place = place
+        self.put_place()
+        self.commit()
 
     def reached(self, place: Worn) -> None:
         """Write a checkpoint, if one is due."""
-        self._place, self._is_stored = place, False
-        self.file.note(time.monotonic(), lambda group: _write_place(group.create_group("place"), place))
+        self._place = place
+        self.note()
+
+    def write_place(self, group: h5py.Group) -> None:
+        """Write the place from which the life goes on."""
+        assert self._place is not None
+        _write_place(group, self._place)
 
     def end(self, error: str | None) -> None:
         """End the file with the message of an error, if any."""
-        if self._place is not None and not self._is_stored:
-            self._put_place(self._place)
-        self.file.end(error is None, error)
-        if error is None:
-            clear_checkpoints(self.file.path)
+        if self._place is not None:
+            self.put_place()
+        self.end_file(error is None, error)
 
     def so_far(self) -> WearResult:
         """Return the life in the file."""
-        return load_wear(self.file.path)
-
-
-def holds_wear(path: str | Path) -> bool:
-    """Whether a result is that of a life of wear.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    with open_result(checks.file_path("path", path)) as file:
-        return "wear" in file
+        return load_wear(self.path)
 
 
 def load_wear(path: str | Path) -> WearResult:
@@ -299,11 +281,15 @@ def load_wear(path: str | Path) -> WearResult:
     InputError
         If the file can't be read, or holds no life of wear.
     """
-    path = checks.file_path("path", path)
-    states = load(path).states
-    with open_result(path) as file:
+    return life_of(StoredResult(path))
+
+
+def life_of(stored: StoredResult) -> WearResult:
+    """Read the life of wear of a stored result, see :func:`load_wear`."""
+    with stored.opened() as file:
         if "wear" not in file:
-            raise InputError(str(path), "holds no wear: it is the result of a run; fastpin.load reads it")
+            raise InputError(str(stored.path), "holds no wear: it is the result of a run; fastpin.load reads it")
+        states = read_result(file, stored.path, ALL)[0].states
         group, grid, history = file["wear"], layout.read_grid(file), layout.read_history(file)
         corners, arrays = len(history.blocks[-1].given) + 1, _read_rows(file, grid.size)
         coefficients = dataset_of(group, "coefficients", float, (grid.size,))[()]

@@ -10,9 +10,9 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, InputError, LoadHistory, MaterialPair, Problem, figures, load, load_wear, record, storage
+from fastpin import MATERIALS, InputError, LoadHistory, MaterialPair, Problem, figures, load, load_wear, record
 from fastpin.figures.kinds import KIND_OPTIONS, KINDS
-from fastpin.storage import held_in_file as held
+from fastpin.storage.stored import StoredResult
 from tests.support.commands import printed, refused, said
 from tests.support.drawing import OF_SOME_PLATES
 from tests.support.lives import sample_life
@@ -45,14 +45,14 @@ def of_kind(stored, life):
 
 SHEET = Problem(MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"]), 1e-2, 1e-5, 0.3)
 
-EXTREMES = functools.cache(storage.marked_extremes)
+FIND = StoredResult.__dict__["extremes"].func
+EXTREMES = functools.cache(lambda path: FIND(StoredResult(path)))
 
 
 @pytest.fixture(autouse=True)
 def _extremes_are_found_once(monkeypatch):
     """Many tables and figures of one file name its extremes. No file of these tests changes."""
-    for module in (held, storage):
-        monkeypatch.setattr(module, "marked_extremes", EXTREMES)
+    monkeypatch.setattr(StoredResult, "extremes", property(lambda stored: EXTREMES(stored.path)))
 
 
 @pytest.fixture

@@ -27,6 +27,7 @@ from fastpin.storage import journal, layout, store, writer
 from fastpin.storage.journal import journal_of
 from fastpin.storage.recording import record as follow
 from fastpin.storage.recording import resume, stored_case
+from fastpin.storage.stored import load_points
 from fastpin.storage.writer import checkpoint_of, coarse_of
 from tests.support.interrupts import StopAt, record_in_parts
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
@@ -255,7 +256,7 @@ def test_a_full_disk_leaves_what_was_there(problem, whole, path, monkeypatch):
         patch.setattr(journal.os, "pwrite", pwrite)
         with pytest.raises(OutputError, match="can't be written: No space left"):
             follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1))
-    assert 1 < store.load_points(path).size < 40
+    assert 1 < load_points(path).size < 40
     resume(path)
     assert_file(path, whole)
 
@@ -269,7 +270,7 @@ def test_what_happens_at_the_very_end_locks_nobody_out(problem, path, monkeypatc
         patch.setattr(layout, "write_statistics", fail)
         with pytest.raises((KeyboardInterrupt, OSError)):
             follow(problem, RANDOM[:6], path, nodes=61, arc=(-3.0, -0.1))
-    assert store.load_points(path).size <= 6
+    assert load_points(path).size <= 6
     resume(path)
     assert_file(path, solve(problem, RANDOM[:6], nodes=61, arc=(-3.0, -0.1)))
 
@@ -305,7 +306,7 @@ def died(problem, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(writer, "CHECKPOINT_EVERY", 0.0)
         patch.setattr(writer, "CHECKPOINT_SHARE", 0.0)
-        patch.setattr(writer.FileRecorder, "end", lambda recorder, _: recorder.file.abort())
+        patch.setattr(writer.FileRecorder, "end", lambda recorder, _: recorder.abort())
         with pytest.raises(Interrupted):
             follow(problem, RANDOM, folder / "a.h5", nodes=61, progress=StopAt(12.0), arc=(-3.0, -0.1))
     return folder

@@ -18,7 +18,8 @@ from fastpin.states.cycles import CYCLE_KINDS, Cycle
 from fastpin.states.state import State
 from fastpin.storage.export import to_xarray
 from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS, SLIP_FIELDS, WITH_LAMINATE
-from fastpin.storage.store import load, load_points, save
+from fastpin.storage.store import load, save
+from fastpin.storage.stored import load_points
 from tests.support.files import replaced
 from tests.support.samples import PAIR, sample_result
 

@@ -42,7 +42,7 @@ from fastpin.casefile.reader import EXAMPLE
 from fastpin.cli.main import main as fastpin_command
 from fastpin.errors import FastpinError, InputWarning
 from fastpin.joints import JOINT_EXAMPLE, read_joint
-from fastpin.storage import export, recording, store
+from fastpin.storage import export, recording, store, stored
 from fastpin.storage.journal import JournaledFile
 from fastpin.studies import plan as plans
 from fastpin.studies import sweep, workers
@@ -569,9 +569,9 @@ def try_result(rng: np.random.Generator, path: Path, seen: Examination) -> None:
     result = seen.python("load", lambda: store.load(path))
     seen.python("load some", lambda: store.load(path, states=[0, -1]))
     seen.python("load after", lambda: store.load(path, after=2))
-    seen.python("stored_case", lambda: recording.stored_case(path))
-    seen.python("stored_error", lambda: recording.stored_error(path))
-    seen.python("load_points", lambda: store.load_points(path).size)
+    seen.python("stored_case", lambda: stored.stored_case(path))
+    seen.python("stored_error", lambda: stored.stored_error(path))
+    seen.python("load_points", lambda: stored.load_points(path).size)
     seen.python("to_xarray", lambda: export.to_xarray(path))
     if result is not None:
         seen.python("repr", lambda: repr(result))

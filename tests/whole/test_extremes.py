@@ -14,7 +14,7 @@ from fastpin import figures, storage
 from fastpin.cli.main import main
 from fastpin.states.extremes import READINGS, Extreme, marked_places
 from fastpin.storage import stored_states
-from fastpin.storage.held_in_file import HeldInFile
+from fastpin.storage.stored import StoredResult
 from tests.support.tiers import gate, some_survey
 
 pytestmark = pytest.mark.gate
@@ -129,15 +129,15 @@ def test_the_page_tells_and_draws_the_largest_of_all(stored, sentences, readings
 
 def test_figures_draw_the_states_of_extremes(stored: Path, readings: dict[str, list[float]]) -> None:
     peak = PEAKS[stored.stem]
-    for drawn in (figures.states.drawn_states(HeldInFile(stored)), figures.states.drawn_states(fastpin.load(stored))):
+    for drawn in (figures.states.drawn_states(StoredResult(stored)), figures.states.drawn_states(fastpin.load(stored))):
         assert len(drawn) <= figures.style.MAX_NAMED
         words = dict(zip((state.step for state in drawn), drawn.marks, strict=True))
         assert words[peak] == "largest pressure, largest shear"
-    hoop = figures.states.drawn_states(HeldInFile(stored), extremes=figures.states.HOOP["plate"])
+    hoop = figures.states.drawn_states(StoredResult(stored), extremes=figures.states.HOOP["plate"])
     best = readings["peak_hoop"].index(max(readings["peak_hoop"]))
     assert dict(zip((state.step for state in hoop), hoop.marks, strict=True))[best] == "largest hoop stress"
     if stored.stem == "bush":
-        seat = figures.states.drawn_states(HeldInFile(stored), extremes=figures.states.HOOP["seat"])
+        seat = figures.states.drawn_states(StoredResult(stored), extremes=figures.states.HOOP["seat"])
         best = readings["peak_hoop_seat"].index(max(readings["peak_hoop_seat"]))
         marks = dict(zip((state.step for state in seat), seat.marks, strict=True))
         assert marks[best] == "largest hoop stress at the seat"
