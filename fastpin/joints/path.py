@@ -31,7 +31,7 @@ JUMPS = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
 NEGLIGIBLE, OF_SPRINGS = 1e-2, 10.0
 """Force of a contact that may be released, in parts of the largest one, and of that of the springs of loose pins."""
 
-NOTHING = 1e-9
+NOTHING = 1e-8
 """Force that is rounding where all loads vanish, in parts of the largest load of the history."""
 
 BACK = (0.0, 1e-3, 1e-2, 1e-1, 1.0)

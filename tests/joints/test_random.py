@@ -144,3 +144,18 @@ def test_a_neat_joint_with_friction_is_unloaded_after_reversed_loads() -> None:
     for state in result:
         check_state(state)
     np.testing.assert_allclose(result[-1].forces, 0.0, atol=1e-8 * FORCE)
+
+
+@pytest.mark.gate
+def test_neat_pins_in_double_shear_are_unloaded() -> None:
+    """The path is lost at 5e-9 of the load, which is not yet rounding."""
+    lug = JointPlate("lug", MATERIALS[0], 1.0, rectangle((-8.0, 15.0), (-4.5, 5.0)), {"left": "both"})
+    strap = JointPlate("strap", MATERIALS[1], 0.5, rectangle((-4.0, 19.0), (-4.5, 5.0)), {"right": "both"}, moves="x")
+    plates, soft = (replace(strap, name="below"), lug, strap), 1.838383838383838e-11
+    names = tuple(plate.name for plate in plates)
+    pins = tuple(JointPin(f"p{k}", at, MATERIALS[2], 1.0, names, 0.0, 0.6, soft) for k, at in enumerate(LAYOUTS[1]))
+    load = {"p0.x": 982814.321478122, "p0.y": -576784.5472108342, "p2.x": -179048.83436189967}
+    result = solve_joint(Joint(plates, pins), [load, dict.fromkeys(load, 0.0)], nodes=24, harmonics=6)
+    for state in result:
+        check_state(state)
+    np.testing.assert_allclose(result[-1].forces, 0.0, atol=1e-8 * FORCE)
