@@ -28,7 +28,7 @@ CASES = {
     "dimensionless": "[dundurs]\nalpha = 0.1\nbeta = 0.0\nnu_pin = 0.3\n[contact]\nload_parameter = 0.1\n"
     "friction = 0.3\n[[load]]\nP = 1.0\n[[load]]\nQ = [0.1, -0.1]\nrepeat = 2\n",
     "bushed": BUSHED,
-    "bush that slips": seats.TEXT,
+    "bush that slips": seats.TEXT.replace("repeat = 3", "repeat = 1"),
     "rigid": PRESSED.replace('[pin]\nmaterial = "steel"', "[pin]\nrigid = true"),
     "lug": PRESSED + "[plate_body]\nouter_radius = 0.02\n[pin_body]\nbore_radius = 0.004\n",
     "not followed": PRESSED + "[[load]]\nM = 1e5\n",

@@ -149,21 +149,25 @@ class Source:
         self.tree = ast.parse(text)
         self.lines = len(text.splitlines())
         nodes = list(ast.walk(self.tree))
-        functions = (node for node in nodes if isinstance(node, ast.FunctionDef))
-        inside = {id(node) for function in functions for node in ast.walk(function)}
+        inside = {
+            line
+            for node in nodes
+            if isinstance(node, ast.FunctionDef)
+            for line in range(node.lineno, (node.end_lineno or 0) + 1)
+        }
         self.imports: list[tuple[int, str, str, bool]] = []
         """Line, module, name and whether a function holds it, of each imported name."""
         for node in nodes:
             if isinstance(node, ast.Import):
-                self.imports += [(node.lineno, alias.name, "", id(node) in inside) for alias in node.names]
+                self.imports += [(node.lineno, alias.name, "", node.lineno in inside) for alias in node.names]
             elif isinstance(node, ast.ImportFrom):
                 module = "." * node.level + (node.module or "")
-                self.imports += [(node.lineno, module, alias.name, id(node) in inside) for alias in node.names]
+                self.imports += [(node.lineno, module, alias.name, node.lineno in inside) for alias in node.names]
         calls = [node for node in nodes if isinstance(node, ast.Call) and node.args]
         self.named = [
             (node.lineno, text.value, text is node.args[0])
             for node in calls
-            if ast.unparse(node.func).rpartition(".")[2] in BY_NAME
+            if getattr(node.func, "attr", getattr(node.func, "id", "")) in BY_NAME
             for text in ast.walk(node.args[0])
             if isinstance(text, ast.Constant) and isinstance(text.value, str)
         ]
