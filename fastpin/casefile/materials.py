@@ -17,7 +17,7 @@ from fastpin.casefile.toml_text import CaseText, Inside, Section, parse_text, re
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, true_or_false
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.growth import LAWS, KnownLaw, known_law
+from fastpin.model.growth import LAWS, KnownLaw, known_law, law_entries
 from fastpin.model.keys import ANY, MATERIAL
 from fastpin.model.laminate import ALONG_LOAD, LAMINATE_KEYS, MODULI, Laminate
 from fastpin.model.layup import checked_angles
@@ -32,7 +32,8 @@ from fastpin.model.materials import (
 )
 from fastpin.model.ply import PLIES, PLY_KEYS, PLY_NUMBERS, STRENGTH_KEYS, Ply, ply_from
 from fastpin.model.synonyms import closest
-from fastpin.model.unit_systems import SI
+from fastpin.model.unit_systems import SI, is_system
+from fastpin.model.units import in_units_of
 
 FILE_KEYS = ("E", "nu", "yield_strength", "ultimate_strength", "expansion", "fatigue", "growth", "source")
 """Keys of a material in a file of materials."""
@@ -41,6 +42,20 @@ _FATIGUE_KEYS = tuple(field.name for field in fields(FatigueConstants))
 
 KINDS = {"layup": ("layup", "ply"), "E1": MODULI, "compliance": ("compliance",)}
 """The ways to give a laminate: the key that names the way, and all its keys."""
+
+
+_ISOTROPIC = ("material", "E", "nu", "rigid", "fatigue", "growth", *NUMBERS)
+
+_REPLACED: dict[str, tuple[str, ...]] = {
+    "material": ("E", "nu", "rigid", "fatigue", "growth", *NUMBERS, *LAMINATE_KEYS),
+    "E": ("material", "rigid", *LAMINATE_KEYS),
+    "nu": ("material", "rigid", *LAMINATE_KEYS),
+    "rigid": ("material", "E", "nu", "fatigue", "growth", *NUMBERS, *LAMINATE_KEYS),
+    **dict.fromkeys(("layup", "ply"), (*_ISOTROPIC, *MODULI, "compliance")),
+    **dict.fromkeys(MODULI, (*_ISOTROPIC, "layup", "ply", "compliance")),
+    "compliance": (*_ISOTROPIC, "layup", "ply", *MODULI),
+}
+"""Keys of a body that each key of its material replaces."""
 
 
 def read_pair(source: CaseText, materials: Mapping[str, Material]) -> MaterialPair | None:
@@ -352,3 +367,25 @@ def _ply(source: CaseText, section: Section, given: Any) -> Ply | None:
             inner.report(f"{key}: has no meaning with load_parameter, for the stresses have no unit", key)
     harmless = {**dict.fromkeys(PLY_KEYS, 1.0), "nu12": 0.0, "name": "", "source": ""}
     return inner.build(ply_from, {key: inner.value(key) for key in PLY_KEYS if key in inner}, harmless)
+
+
+def make_room(body: dict[str, Any], key: str, value: Any, materials: Mapping[str, Material], system: Any) -> None:
+    """Remove the keys of a body that its new `key` for the material replaces.
+
+    If one constant of a material with a name changes, its other constants stay. They are written in the units of the
+    `system`.
+    """
+    if key == "rigid" and value is not True:
+        return
+    material_name = body.get("material")
+    if key in ("E", "nu") and isinstance(material_name, str) and material_name in materials:
+        material = materials[material_name]
+        constants: dict[str, Any] = {"E": material.E, "nu": material.nu, **material.numbers}
+        if material.fatigue is not None:
+            constants["fatigue"] = material.fatigue.given()
+        if material.growth is not None:
+            constants["growth"] = law_entries(material.growth)
+        constants = in_units_of(constants, MATERIAL, system if is_system(system) else SI, None)
+        body |= {name: value for name, value in constants.items() if name in ("E", "nu") or name not in body}
+    for replaced in _REPLACED.get(key, ()):
+        body.pop(replaced, None)

@@ -10,7 +10,7 @@ import contextlib
 import gc
 import re
 import tomllib
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -148,6 +148,7 @@ class CaseText:
         self.placed: list[tuple[KeyPath, str]] = []
         self.readable = True
         self.units, self._given = SI, dict[str, Any]()
+        self._blocks: Mapping[str, Sequence[int]] = {}
         if not isinstance(text, str):
             raise InputError("text", f"must be TOML text, not {as_toml(text)}")
         lines = text.replace("\r\n", "\n").split("\n")
@@ -233,14 +234,21 @@ class CaseText:
 
     def line(self, *place: str | int) -> int:
         """Line (from 1) of the value at `place`, or of the smallest table around it; 0 if neither is in the text."""
+        if place[:1] and place[0] in self._blocks and len(place) > 1:
+            place = (place[0], self._blocks[str(place[0])][int(place[1])], *place[2:])
         places = self._located()[0]
         around = (place[:length] for length in range(len(place), 0, -1))
         return next((places[part] for part in around if part in places), 0)
 
-    def with_tables(self, tables: dict[str, Any]) -> CaseText:
-        """A copy of this text with other tables and no faults. Their faults get the lines of this text."""
+    def with_tables(self, tables: dict[str, Any], blocks: Mapping[str, Sequence[int]] | None = None) -> CaseText:
+        """A copy of this text with other tables and no faults. Their faults get the lines of this text.
+
+        `blocks` says, for [[name]] blocks that are not those of the text, by their name: the place of the block in the
+        text from which each was made.
+        """
         other = CaseText.__new__(CaseText)
         other.__dict__.update(self.__dict__)
+        other._blocks = self._blocks if blocks is None else blocks
         other.faults, other.placed = [], []
         other.root = Section(other, (), tables)
         return other

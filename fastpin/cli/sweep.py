@@ -202,7 +202,7 @@ def _draw(options: argparse.Namespace, whole: studies.plan.Plan, rows: list[dict
     if options.envelope:
         found = report.sweep.envelopes(plan, rows, values[0])
         if found:
-            problem = plan.case(plan.points[0]).problem
+            problem = plan.problem
             figures.sweep.plot_envelope(found, options.plot, title, problem=problem, varied=plan.fields)
         missing = {"": len(rows) - sum(len(next(iter(curve.columns.values()))) for curve in found)}
     else:

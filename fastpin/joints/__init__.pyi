@@ -15,3 +15,4 @@ from .result import SectionCrack as SectionCrack
 from .result import SectionDamage as SectionDamage
 from .result import SectionMargin as SectionMargin
 from .solving import solve_joint as solve_joint
+from .varied import BaseJoint as BaseJoint

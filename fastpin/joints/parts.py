@@ -165,7 +165,7 @@ class JointPlate:
             holes = (*free, *pinned)
             made = Lug(material.nu, plane, radius, shifted, self.supports, self.loads, holes, self.floats)
         except InputError as error:
-            raise InputError(f"plate {self.name}", f"{error}; points count from its first pin") from None
+            raise InputError(f"plate.{self.name}", f"{error}; points count from its first pin") from None
         return made, tuple(names)
 
 
@@ -318,7 +318,8 @@ class Joint:
     Raises
     ------
     InputError
-        If a name stands twice or is unknown, holes overlap, radii differ, or a plate has no pin.
+        If a name stands twice or is unknown, holes overlap, radii differ, or a plate has no pin. The field names the
+        part: "pin.A.at", "plate.skin".
     """
 
     plates: tuple[JointPlate, ...]
@@ -339,16 +340,18 @@ class Joint:
             raise InputError("name", f"two parts are called {checks.as_toml(twice[0])}")
         for pin in self.pins:
             for name in pin.plates:
-                checks.known_name("plates", name, names[: len(self.plates)])
+                checks.known_name(f"pin.{pin.name}.plates", name, names[: len(self.plates)])
             if not math.isclose(pin.radius, self.radius, rel_tol=1e-9):
                 words = f"all pins of a joint must have one radius: {pin.name} has {pin.radius:g} m"
-                raise InputError("radius", f"{words}, {self.pins[0].name} has {self.radius:g} m")
+                raise InputError(f"pin.{pin.name}.radius", f"{words}, {self.pins[0].name} has {self.radius:g} m")
         for plate in self.plates:
             self._check_holes(plate)
             others = [other for other in self.plates if plate.is_infinite and other is not plate and not other.floats]
             if others:
                 words = f"the plate {plate.name} is infinite, so {others[0].name} must be free"
-                raise InputError("moves", f"{words}: under a net force an infinite plate moves without limit")
+                raise InputError(
+                    f"plate.{others[0].name}.moves", f"{words}: under a net force an infinite plate moves without limit"
+                )
         for pin, plate in self.sections:
             self.problem(pin, plate)
         for pin in self.pins:
@@ -358,25 +361,26 @@ class Joint:
         """Check that a pin can go through the slices of its plates."""
         sliced = next((plate.name for plate in self.plates if plate.name in pin.plates and plate.slices > 1), None)
         if sliced is not None and pin.clamp is not None:
-            raise InputError("clamp", f"pin {pin.name} can't clamp {sliced}, which has slices")
+            raise InputError(f"pin.{pin.name}.clamp", f"pin {pin.name} can't clamp {sliced}, which has slices")
         least = 2 if pin.heads else 3
         if pin.flexibility == BEAM and sum(one is pin for one, _ in self.sections) < least:
             words = f"pin {pin.name} is a beam and needs {least} slices in all its plates"
-            raise InputError("slices", f"{words}, or heads" if least == 3 else words)
+            raise InputError(f"pin.{pin.name}.flexibility", f"{words}, or heads" if least == 3 else words)
 
     def _check_holes(self, plate: JointPlate) -> None:
         """Check that the pinned holes of a plate keep apart and lie inside it."""
         through = self.pins_of(plate)
         if not through:
-            raise InputError("plates", f"no pin goes through the plate {plate.name}")
+            raise InputError(f"plate.{plate.name}", f"no pin goes through the plate {plate.name}")
         if plate.floats and len(through) < 2:
-            raise InputError("moves", f"the plate {plate.name} is free and has one pin: nothing keeps it from turning")
+            words = f"the plate {plate.name} is free and has one pin: nothing keeps it from turning"
+            raise InputError(f"plate.{plate.name}.moves", words)
         least = 2.0 * LEAST_PITCH * self.radius
         for one, other in itertools.combinations(through, 2):
             apart = abs(one.at - other.at)
             if checks.is_above(least, apart):
                 words = f"the holes of {one.name} and {other.name} in {plate.name} are {apart:.4g} m apart"
-                raise InputError("at", f"{words}; they need {LEAST_PITCH:g} diameters, {least:.4g} m")
+                raise InputError(f"pin.{other.name}.at", f"{words}; they need {LEAST_PITCH:g} diameters, {least:.4g} m")
         if not plate.is_infinite:
             plate.lug({pin.name: pin.at for pin in through}, self.radius, self.plane)
 
@@ -472,7 +476,7 @@ class Joint:
                 pin_load="body", thickness=plate.thickness, unit_system=self.unit_system,
             )  # fmt: skip
         except InputError as error:
-            raise InputError(error.field, f"pin {pin.name} in {plate.name}: {error.reason}") from None
+            raise InputError(f"pin.{pin.name}.{error.field}", f"in {plate.name}: {error.reason}") from None
 
 
 def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], other: tuple[Material, float]) -> float:

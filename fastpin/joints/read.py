@@ -120,13 +120,19 @@ def parse_joint(text: str, name: str = "joint file") -> JointFile:
     CaseFileError, InputError
         See :func:`fastpin.read_case`.
     """
-    return parse_text(text, name, "joint file", _joint_file)
+    return parse_text(text, name, "joint file", joint_file_in)
 
 
-def _joint_file(source: CaseText) -> JointFile | None:
+def kinds_in(source: CaseText) -> dict[str, Any]:
+    """The kinds of the keys of a joint file, see :mod:`fastpin.model.keys`."""
     names = [name for block in source.blocks("load") for name in block.table]
     stresses = [name for name in names if name.rpartition(".")[2] in REMOTE_NAMES]
-    source.to_si(_KINDS | {"load": {ANY: "force", **dict.fromkeys(stresses, "traction")}}, True)
+    return _KINDS | {"load": {ANY: "force", **dict.fromkeys(stresses, "traction")}}
+
+
+def joint_file_in(source: CaseText) -> JointFile | None:
+    """Read the tables of a text. What is returned has no meaning if the text has faults."""
+    source.to_si(kinds_in(source), True)
     source.check_sections(JOINT_KEYS, ("plate", "pin", "load"))
     title, settings = source.root.checked("title", string) or "", source.section("joint")
     plane = settings.choice("plane", ("stress", *(word for word in PLANES if word != "stress")))
@@ -143,7 +149,12 @@ def _joint_file(source: CaseText) -> JointFile | None:
     try:
         joint = Joint(tuple(plates), tuple(pins), plane, source.units)  # type: ignore[arg-type]
     except InputError as error:
-        source.report(str(error), "pin")
+        section, name, key = (*error.field.split(".", 2), "", "")[:3]
+        named = [block for block in source.blocks(section) if name in _names("name", block.value("name"))]
+        if named:
+            named[0].report(str(error), *filter(None, [key]))
+        else:
+            source.report(str(error), "pin")
         return None
     corners = []
     for block in loads:

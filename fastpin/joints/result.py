@@ -26,6 +26,12 @@ from fastpin.states.margins import Margin, static_margins
 from fastpin.states.state import State
 from fastpin.states.yielding import PREFIX, yielding_owners
 
+BALANCED = 1e-3
+"""Sum of the forces of the pins on a plate, in parts of the largest, below which there are no shares.
+
+The weak springs of loose pins bring 1e-4.
+"""
+
 
 class SectionDamage(NamedTuple):
     """The damage of the plate, or of the pin, where a pin goes through a plate."""
@@ -129,8 +135,8 @@ class JointState:
     def shares(self, plate: str) -> dict[str, float]:
         """The part of the force on a plate or a slice that each pin brings, by name, along the sum of these forces.
 
-        NaN where the pins do not load the plate together. Friction of faying surfaces does not count. An unknown plate
-        raises :class:`InputError`.
+        NaN where the pins do not load the plate together: where their sum is below 1e-3 of the largest one. Friction of
+        faying surfaces does not count. An unknown plate raises :class:`InputError`.
         """
         known_name("plate", whole_name(string("plate", plate)), [each.name for each in self.joint.plates])
         pins = [pin.name for pin in self.joint.pins if whole_name(plate) in pin.plates]
@@ -138,7 +144,7 @@ class JointState:
         whole = np.sum(list(found.values()), axis=0)
         size = float(whole @ whole)
         largest = max(float(force @ force) for force in found.values())
-        if not size > 1e-12 * largest:
+        if not size > BALANCED**2 * largest:
             return dict.fromkeys(found, float("nan"))
         return {name: float(force @ whole) / size for name, force in found.items()}
 
@@ -277,18 +283,19 @@ class JointResult(Sequence[JointState]):
         Returns
         -------
         list of SectionDamage
-            Criterion by criterion, the largest damage first. Parts whose material lacks the constants are left out.
+            Criterion by criterion, the largest damage first. Parts whose material lacks the constants are left out, and
+            holes at which no stress changes.
 
         Raises
         ------
         InputError
             If no material has the constants, or there are less than two states or no cycle.
         """
+        found: list[SectionDamage] = []
         how = FatigueAssessment() if how is None else instance("how", how, FatigueAssessment, "a FatigueAssessment")
         check_callable("progress", progress)
         check_fatigue(self.joint, how, self._loads)
         places, known = range(len(self)) if how.over == "history" else self._cycle, _assessed_sections(self.joint, how)
-        found = []
         for done, place in enumerate(known):
             pin, plate = self.joint.sections[place]
 
@@ -296,7 +303,12 @@ class JointResult(Sequence[JointState]):
                 if progress is not None:
                     progress(done + part / whole, len(known))
 
-            at_pin = assessed_fatigue(self.states.section(place).read(places), how, tell)
+            try:
+                at_pin = assessed_fatigue(self.states.section(place).read(places), how, tell)
+            except InputError as error:
+                if error.field != "states" or (done == len(known) - 1 and not found):
+                    raise
+                continue
             found += [SectionDamage(pin.name, plate.name, each) for each in at_pin]
         return sorted(found, key=lambda one: (how.criteria.index(one.found.criterion), -one.found.hot_spot.damage))
 

@@ -78,9 +78,8 @@ CASE: dict[str, Any] = {
 """The kinds of a case file by section and key. A key that is not here has no unit."""
 
 
-def kind_of(field: str) -> str:
+def kind_of(field: str, kinds: Any = CASE) -> str:
     """Return the kind of a field of a case, such as "pin.E" or "load.2.P"; empty if it has no unit."""
-    kinds: Any = CASE
     for part in field.split("."):
         if not part.isdigit():
             kinds = kinds.get(part, "") if isinstance(kinds, Mapping) else ""

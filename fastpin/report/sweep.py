@@ -18,17 +18,15 @@ from fastpin.assess.strength import strength_words
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import InputError
 from fastpin.model import LOADS, Case, Problem, Profile, StrengthAssessment, Wear, checks, synonyms
-from fastpin.model.keys import kind_of
 from fastpin.model.points import BODIES
 from fastpin.model.profile_terms import TERMS
 from fastpin.model.units import DEGREE, PLAIN, Unit, measures_of, units
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.index import DONE, FAILED
-from fastpin.studies.outcome_tables import KEYS
+from fastpin.studies.outcome_tables import KEYS, MOST_CLASSES
 from fastpin.studies.outcomes import StudyOutcome
 from fastpin.studies.plan import Plan
 from fastpin.studies.run_end import KEY_FIGURES, bar_column
-from fastpin.studies.variation import field_words
 from fastpin.version import __version__
 
 TableRow = dict[str, Any]
@@ -71,7 +69,7 @@ def run_columns(plan: Plan, rows: Sequence[TableRow]) -> list[Column]:
     columns = [("run", "", [row["id"] for row in rows])]
     for name in plan.fields:
         heading = plan.labels.get(name, name)
-        columns.append(_column(heading, [row[name] for row in rows], unit.get(kind_of(name), PLAIN)))
+        columns.append(_column(heading, [row[name] for row in rows], unit.get(plan.base.kind(name), PLAIN)))
     shown = dict(zip(plan.outcomes, plan.outcomes, strict=True)) or _SHOWN
     for name, heading in shown.items():
         values = [_in_words(plan, name, row.get(name)) for row in rows]
@@ -95,7 +93,7 @@ def write_csv(plan: Plan, rows: Sequence[TableRow], path: Path) -> None:
     """
     check_writable(path)
     rows, unit = printed_rows(plan, rows)
-    named = [(name, unit.get(kind_of(name), PLAIN)) for name in plan.fields]
+    named = [(name, unit.get(plan.base.kind(name), PLAIN)) for name in plan.fields]
     named += [(name, printed_unit(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
     with_bars = [
         each
@@ -283,6 +281,7 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
     x, y, others = check_axes(plan, value, x, y)
     rows, unit = printed_rows(plan, rows)
     found = [row.get(value) for row in rows if row["status"] == DONE and row.get(value) is not None]
+    classes = {} if value == "seconds" else plan.numbers[value].classes
     least = _rounding(plan, rows, value, unit)
     shown = [number for number in found if number is not None and abs(number) > least]
     factor, label = printed_unit(plan, value, unit).scale(shown)
@@ -307,9 +306,9 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
         axes[0][0] if y else None,
         [(name, numbers, failed) for name, (numbers, failed, *_) in parts.items()],
         len(rows) - len(found),
-        plan.case(plan.points[0]).problem,
+        plan.base.drawn(plan.case(plan.points[0])),
         tuple(name for name in plan.fields if len(_different([point.values.get(name) for point in plan.points])) > 1),
-        {} if value == "seconds" else plan.numbers[value].classes,
+        {number: words for number, words in classes.items() if len(classes) <= MOST_CLASSES or number in found},
         [bars for *_, bars, _ in parts.values()] if any(bar_column(value) in row for row in rows) else [],
         [endless for *_, endless in parts.values()] if value in plan.outcomes and plan.outcomes[value].is_life else [],
     )
@@ -318,8 +317,8 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
 def _axis(plan: Plan, rows: Sequence[TableRow], name: str, unit: Mapping[str, Unit]) -> tuple[Axis, dict[Any, int]]:
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
-    factor, label = unit.get(kind_of(name), PLAIN).scale(values)
-    words = plan.labels.get(name, field_words(name))
+    factor, label = unit.get(plan.base.kind(name), PLAIN).scale(values)
+    words = plan.words(name)
     axis = Axis(axis_label(words, label), factor * np.array(values, float), plan.fields[name] == "log")
     return axis, {value: place for place, value in enumerate(values)}
 
@@ -336,10 +335,10 @@ def axis_label(words: str, unit: str) -> str:
 
 def value_words(plan: Plan, rows: Sequence[TableRow], field: str, unit: Mapping[str, Unit]) -> Callable[[Any], str]:
     """Return a function that gives words for a value of a field, in the unit that suits all its values."""
-    words, given = plan.labels.get(field, field_words(field)), [row[field] for row in rows if row[field] is not None]
+    words, given = plan.words(field), [row[field] for row in rows if row[field] is not None]
     if not all(map(_is_number, given)):
         return lambda value: f"{words} = {brief(value)}".replace('"', "")
-    factor, label = unit.get(kind_of(field), PLAIN).scale(given)
+    factor, label = unit.get(plan.base.kind(field), PLAIN).scale(given)
     return lambda value: f"{words} = {factor * value:.4g} {label}".strip()
 
 
@@ -385,10 +384,10 @@ def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRo
     """
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
         return rows, {}
-    problem = plan.case(plan.points[0]).problem
+    problem = plan.problem
     printed = {kind: unit.printed for kind, unit in units(problem).items()} | {"angle": DEGREE}
     # The thickness of the points that do not vary it; None if all do. Points of equal states share a case.
-    fixed = (plan.case(point).problem.thickness for point in plan.points if THICKNESS not in point.values)
+    fixed = (plan.base.problem(plan.case(point)).thickness for point in plan.points if THICKNESS not in point.values)
     usual, length = next(fixed, None), measures_of(problem.unit_system, True)["length"]
     thicknesses = [usual if row.get(THICKNESS) is None else length.in_si(row[THICKNESS]) for row in rows]
     of_thickness = {each: units(replace(problem, thickness=each)) for each in {*thicknesses}}
@@ -471,7 +470,7 @@ def envelopes(plan: Plan, rows: Sequence[TableRow], value: str) -> list[Curve]:
             words = ", ".join(words_of(row[name]) for name, words_of in others.items())
             found.setdefault(words, []).append(_stresses(plan.case(point), row[value]))
     how = StrengthAssessment(**json.loads(plan.outcomes[value].definition)["how"])
-    problem = plan.case(plan.points[0]).problem
+    problem = plan.problem
     fixed, stress = {"criterion": strength_words(problem, how)}, units(problem)["traction"]
     curves = []
     for words, points in found.items():

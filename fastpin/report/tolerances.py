@@ -13,13 +13,11 @@ from fastpin.assess import outputs
 from fastpin.assess.outputs import NUMBER, UNKNOWN, Column, Output, list_of, map_of, table
 from fastpin.errors import InputError
 from fastpin.model import checks, synonyms
-from fastpin.model.keys import kind_of
 from fastpin.model.units import PLAIN, Unit
 from fastpin.report.sweep import TableRow, axis_label, printed_rows, printed_unit
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.run_end import bar_column
 from fastpin.studies.tolerances import OutcomeEffect, Reached, Tolerances, effects_of, part_words
-from fastpin.studies.variation import field_words
 
 MOST_OUTCOMES = 4
 """Most outcomes of a figure."""
@@ -140,7 +138,7 @@ def tolerance_chart(study: Tolerances, rows: Sequence[TableRow], name: str) -> T
     effect = effects_of(study, found)[name]
     outcomes = np.array([_known(row, name) for row in found])
     factor, label = printed_unit(plan, name, unit).scale([value for value in outcomes.tolist() if math.isfinite(value)])
-    words = {field: plan.labels.get(field, field_words(field)) for field in study.limits}
+    words = {field: plan.words(field) for field in study.limits}
     bars, clouds = [], []
     for field in effect.swings:
         limits, (of_field, of_label) = study.limits[field], _field_unit(study, field, unit)
@@ -370,4 +368,4 @@ def _unresolved(rows: Sequence[TableRow], name: str) -> int:
 
 def _field_unit(study: Tolerances, field: str, unit: Mapping[str, Unit]) -> tuple[float, str]:
     """Return the factor and the label of the unit that suits the limits of a field."""
-    return unit.get(kind_of(field), PLAIN).scale([study.limits[field].low, study.limits[field].high])
+    return unit.get(study.plan.base.kind(field), PLAIN).scale([study.limits[field].low, study.limits[field].high])

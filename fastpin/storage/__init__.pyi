@@ -3,8 +3,10 @@ from . import wear_files as wear_files
 from .export import to_dataframe as to_dataframe
 from .export import to_xarray as to_xarray
 from .joint_files import load_joint as load_joint
+from .joint_files import pack_joint as pack_joint
 from .joint_files import record_joint as record_joint
 from .joint_files import resume_joint as resume_joint
+from .joint_files import save_joint as save_joint
 from .joint_files import stored_joint as stored_joint
 from .journal import is_being_written as is_being_written
 from .layout import versions as versions

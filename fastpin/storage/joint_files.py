@@ -18,6 +18,7 @@
 from __future__ import annotations
 
 import json
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -41,7 +42,8 @@ from fastpin.model.checks import file_path, instance, number, string, true_or_fa
 from fastpin.model.loads import LOADS
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.run import RunProgress
-from fastpin.storage import files, hdf5, layout
+from fastpin.storage import files, hdf5, layout, packed
+from fastpin.storage.file_objects import written_h5
 from fastpin.storage.hdf5 import as_python, dataset_of, text_of
 from fastpin.storage.restarts import ARRAYS, read_array
 from fastpin.storage.store import open_result
@@ -95,22 +97,54 @@ def record_joint(
     OutputError
         If the file can't be written any more. The states in the file stay.
     """
-    joint, corners, title, nodes, harmonics, fatigue, crack = instance("case", case, JointFile, "a JointFile")
-    task, path = JointTask.of(joint, corners, nodes, harmonics, progress), file_path("path", path)
+    task, attributes = _followed(case, progress)
+    path = file_path("path", path)
     files.check_writable(path, result=True)
-    attributes: dict[str, Any] = {"title": string("title", title)}
-    if fatigue is not None:
-        instance("fatigue", fatigue, FatigueAssessment, "a FatigueAssessment")
-        attributes["fatigue"] = stored_text("fatigue", fatigue)
-    if crack is not None:
-        check_crack(joint, instance("crack", crack, SectionCrack, "a SectionCrack"), len(task.values))
-        attributes |= {"crack": stored_text("crack", crack.how), "crack_at": [crack.pin, crack.plate]}
     check_overwriting(path, true_or_false("overwrite", overwrite))
     writer = JointWriter(path)
     writer.task, writer.attributes = task, attributes
     with writer.closing():
         task.follow(writer)
     return load_joint(path)
+
+
+def pack_joint(case: JointFile, result: JointResult, error: str | None) -> bytes:
+    """Return a result with a state in few bytes, without its restart; see packed.py.
+
+    `error` tells why the result is incomplete.
+    """
+    task, attributes = _followed(case, None)
+    file, rows = packed.PackedGroup(), defaultdict[str, list[layout.Rows]](list)
+    holes: list[Any] = [contact.problem.plate_body for contact in result[0].contacts]
+    _write_head(file, task, attributes, holes)
+    for state in result:
+        for name, row in _rows_of(state).items():
+            rows[name].append(row)
+    for name, some in rows.items():
+        layout.append(file[name], {key: np.concatenate([row[key] for row in some]) for key in some[0]})
+    layout.write_statistics(file, {"snaps": result.snaps, "seconds": result.seconds})
+    file.attrs.update({"complete": True} if error is None else {"error": error})
+    return packed.to_bytes(file)
+
+
+def save_joint(content: bytes, path: Path) -> None:
+    """Write a packed result to an HDF5 file. Nothing can go on with it."""
+    with files.replacing(path, result=True) as temporary, written_h5(temporary, False) as file:
+        packed.from_bytes(content).copy_to(file)
+
+
+def _followed(case: JointFile, progress: RunProgress | None) -> tuple[JointTask, dict[str, Any]]:
+    """What is followed, and the attributes with title and questions."""
+    joint, corners, title, nodes, harmonics, fatigue, crack = instance("case", case, JointFile, "a JointFile")
+    task = JointTask.of(joint, corners, nodes, harmonics, progress)
+    found: dict[str, Any] = {"title": string("title", title)}
+    if fatigue is not None:
+        instance("fatigue", fatigue, FatigueAssessment, "a FatigueAssessment")
+        found["fatigue"] = stored_text("fatigue", fatigue)
+    if crack is not None:
+        check_crack(joint, instance("crack", crack, SectionCrack, "a SectionCrack"), len(task.values))
+        found |= {"crack": stored_text("crack", crack.how), "crack_at": [crack.pin, crack.plate]}
+    return task, found
 
 
 def resume_joint(path: str | Path, like: JointFile | None = None, progress: RunProgress | None = None) -> JointResult:
@@ -305,7 +339,9 @@ def _check_same(path: Path, case: JointFile, task: JointTask, like: JointFile | 
 # -- the parts of a file -----------------------------------------------------------------------------------------------
 
 
-def _write_head(file: h5py.File, task: JointTask, attributes: dict[str, Any], holes: Sequence[HoleInPlate]) -> None:
+def _write_head(
+    file: h5py.File | packed.PackedGroup, task: JointTask, attributes: dict[str, Any], holes: Sequence[HoleInPlate]
+) -> None:
     """Write all but the states and restarts into an empty file."""
     joint, names = task.joint, task.joint.load_names
     layout.write_origin(file, layout.JOINT, 1)

@@ -280,8 +280,9 @@ class PackedGroup:
         self._parts: dict[str, PackedArray | PackedGroup] = {}
 
     def create_group(self, name: str) -> PackedGroup:
-        """Add a group."""
-        return self._add(name, PackedGroup(self._path(name)))
+        """Add a group, and the groups around it."""
+        around, last = self._around(name)
+        return around._add(last, PackedGroup(around._path(last)))
 
     def create_dataset(
         self, name: str, shape: tuple[int, ...] | None = None, dtype: Any = None, data: Any = None, **_: Any
@@ -297,8 +298,7 @@ class PackedGroup:
         return part
 
     def __setitem__(self, name: str, values: PackedArray | np.ndarray) -> None:
-        path, _, last = name.rpartition("/")
-        group = self[path] if path else self
+        group, last = self._around(name)
         group._add(
             last, values if isinstance(values, PackedArray) else PackedArray(group._path(last), np.asarray(values))
         )
@@ -321,6 +321,20 @@ class PackedGroup:
     def items(self) -> Iterator[tuple[str, PackedArray | PackedGroup]]:
         """Names and parts."""
         yield from self._parts.items()
+
+    def copy_to(self, group: h5py.Group) -> None:
+        """Write everything below this group into an empty group of an HDF5 file."""
+        group.attrs.update(self.attrs)
+        for name, part in self.items():
+            if isinstance(part, PackedGroup):
+                part.copy_to(group.create_group(name))
+            else:
+                group.create_dataset(name, data=part.values).attrs.update(part.attrs)
+
+    def _around(self, name: str) -> tuple[PackedGroup, str]:
+        """The group around a part, which is made if it is missing, and the part's name in it."""
+        path, _, last = name.rpartition("/")
+        return (self if not path else self[path] if path in self else self.create_group(path)), last
 
     def _path(self, name: str) -> str:
         return f"{self.name.rstrip('/')}/{name}"

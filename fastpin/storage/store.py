@@ -153,11 +153,13 @@ def unpack_sections(content: bytes, path: Path) -> dict[str, Any]:
 
 
 @contextmanager
-def _opened(content: bytes, path: Path, *arguments: str) -> Iterator[packed.PackedGroup]:
+def _opened(
+    content: bytes, path: Path, *arguments: str, form: str | None = layout.FORMAT
+) -> Iterator[packed.PackedGroup]:
     """Open a packed result for reading. `path` names it in errors."""
     with reading(path, *arguments):
         file = packed.from_bytes(content)
-        layout.check_format(file, str(path))
+        layout.check_format(file, str(path), form)
         yield file
 
 
@@ -290,7 +292,7 @@ def open_result(path: Path, *arguments: str, form: str | None = layout.FORMAT) -
     """
     content = packed.packed_result(path)
     if content is not None:
-        with _opened(content, path, *arguments) as file:
+        with _opened(content, path, *arguments, form=form) as file:
             yield file
         return
     files.check_exists(path)

@@ -32,6 +32,7 @@ from fastpin.model.checks import alternatives, as_toml, file_path, string
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.margins import MARGINS
 from fastpin.states.quantities import QUANTITIES
+from fastpin.studies.joint_outcomes import read_joint_outcome
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
@@ -53,6 +54,7 @@ KEYS = {
     "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
     **{name: (name, *question.keys) for name, question in QUESTIONS.items()},
     "margin": ("margin", "body"),
+    "joint": ("joint", "pin", "plate", "take"),
     "function": ("function", "classes"),
 }
 """The first key of an outcome says what is read. The others may stand beside it."""
@@ -211,6 +213,13 @@ def _of_table(source: CaseText, section: Section, folder: Path, beside: Mapping[
     allowed = KEYS[first[0]]
     others = f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
     section.check_keys(allowed, "", f"; beside {first[0]} there {others}")
+    if first[0] == "joint":
+        return read_joint_outcome(section, beside.get("joint"))
+    if "joint" in beside and first[0] != "function":
+        section.report(
+            f'{first[0]}: is for one pin; of a joint there are {{ joint = "share", pin = ... }} and functions'
+        )
+        return None
     if first[0] == "wear":
         return _of_wear(section, folder, beside)
     if first[0] in QUESTIONS:

@@ -110,7 +110,7 @@ class StudyOutcome:
     kind: str
     unit: str
     definition: str
-    read: Callable[[Result], Any]
+    read: Callable[[Any], Any]
     classes: Mapping[int, str] = field(default_factory=dict)
     bar: Callable[[Result], float] | None = None
     wear: Wear | None = None
@@ -163,7 +163,7 @@ class OutcomeValue(NamedTuple):
     bar: float | None = None
 
 
-def value_of(outcome: StudyOutcome, result: Result) -> OutcomeValue:
+def value_of(outcome: StudyOutcome, result: Any) -> OutcomeValue:
     """Read an outcome, with angles and widths in rad. Whatever goes wrong becomes the reason of a missing value."""
     try:
         value = outcome.read(result)
@@ -193,7 +193,7 @@ def pickled(outcome: StudyOutcome) -> bytes:
         raise FastpinError(f"{words} ({error})") from None
 
 
-def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Result) -> dict[str, OutcomeValue]:
+def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Any) -> dict[str, OutcomeValue]:
     """Read outcomes in the units of reports. Each is given by its definition and the bytes of :func:`pickled`.
 
     A function that this process does not find is a missing value, and not the end of the process.
@@ -214,7 +214,7 @@ def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Result) 
     return values
 
 
-def bar_of(outcome: StudyOutcome, value: float, result: Result) -> float | None:
+def bar_of(outcome: StudyOutcome, value: float, result: Any) -> float | None:
     """Error bar of a number, with angles and widths in rad; inf if the coarse grid has no number to compare.
 
     Without error bars it is inf if the nodes do not resolve the number. None: the number has none.
@@ -222,7 +222,7 @@ def bar_of(outcome: StudyOutcome, value: float, result: Result) -> float | None:
     try:
         if outcome.bar is not None:
             bar = outcome.bar(result)
-        elif result.coarse is None:
+        elif getattr(result, "coarse", None) is None:  # a joint never has one
             return None
         else:
             other = value_of(outcome, result.coarse).value

@@ -12,17 +12,17 @@ import hashlib
 import itertools
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
-from fastpin.assess.questions import QUESTIONS
-from fastpin.casefile.profiles import PROFILES, part_fault
-from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
+from fastpin import joints
+from fastpin.casefile.reader import EXAMPLE, KEYS, sections_with
 from fastpin.casefile.toml_text import (
     MOST_BYTES_OF_PLAN,
     CaseText,
@@ -34,15 +34,16 @@ from fastpin.casefile.toml_text import (
     written,
 )
 from fastpin.errors import CaseFileError, InputError, InputWarning
-from fastpin.model import LOADS, Case, checks
-from fastpin.model.doubts import doubts, warn_of, wear_doubts
+from fastpin.model import checks
+from fastpin.model.doubts import warn_of, wear_doubts
 from fastpin.model.keys import ANY, CASE
+from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 from fastpin.model.unit_systems import checked_system
-from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
+from fastpin.studies.identity import canonical_json, id_of_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, bar_faults, has_strengths, outcomes_from, outcomes_in_text
 from fastpin.studies.run_end import KEY_FIGURES
-from fastpin.studies.variation import FACTORS, LOAD_TABLES, BaseCase, conflict, other_units, reads_files
+from fastpin.studies.variation import BaseCase, conflict, field_fault, reads_files, varied_name
 
 MAX_RUNS = 100_000
 """Most runs of one plan."""
@@ -70,13 +71,40 @@ ROOT_KEYS = {name: name for name in ("title", "units", "case")} | {
 }  # fmt: skip
 """Keys of a plan, as they are written."""
 
-UNVARIED = {
-    "wear": ("no run of a sweep wears", "depth"),
-    **{name: (question.unvaried, next(iter(question.outcomes))) for name, question in QUESTIONS.items()},
-}
-"""Sections whose keys no plan varies: the reason, and an outcome that has the keys."""
+_OF_JOINT = re.compile(r"^\s*\[(joint|\[(pin|plate)\])\]", re.MULTILINE)
+"""A section that only a joint file has."""
 
 _RANGE_KEYS = ("from", "to", "count", "spacing")
+
+
+class Base(Protocol):
+    """The file that a plan varies: :class:`fastpin.studies.variation.BaseCase`, which says what each method returns.
+
+    The other kind is :class:`fastpin.joints.BaseJoint`. A `case` is what its file holds.
+    """
+
+    form: str
+    name: str
+    text: CaseText
+    is_whole: bool
+
+    def is_table(self, names: tuple[str, ...], is_range: bool) -> bool: ...
+    def fault(self, names: tuple[str, ...]) -> str | None: ...
+    def kind(self, field: str) -> str: ...
+    def words(self, field: str) -> str: ...
+    def vary(self, values: dict[str, Any]) -> tuple[CaseText, Any]: ...
+    def locate(
+        self, places: Mapping[str, KeyPath], values: Mapping[str, Any], place: KeyPath, message: str
+    ) -> tuple[KeyPath, str]: ...
+    def beside(self, varied: Collection[str] = ()) -> dict[str, Any]: ...
+    def nominal(self, case: Any, name: str) -> float | None: ...
+    def is_idle(self, case: Any, factor: str) -> bool: ...
+    def usual(self, case: Any, swing: bool) -> dict[str, Any]: ...
+    def doubts(self, case: Any) -> list[InputWarning]: ...
+    def identity(self, case: Any, strengths: bool) -> dict[str, Any]: ...
+    def problem(self, case: Any) -> Problem: ...
+    def drawn(self, case: Any) -> Problem | None: ...
+    def unit_names(self, case: Any) -> dict[str, str]: ...
 
 
 @dataclass(frozen=True)
@@ -130,8 +158,8 @@ class Plan:
     outcomes: Outcomes
     doubts: list[InputWarning]
     labels: dict[str, str]
-    _base: BaseCase
-    _cases: dict[str, Case]
+    _base: Base
+    _cases: dict[str, Any]
 
     def __repr__(self) -> str:
         return f"<Plan: {len(self.points):,} points of {', '.join(self.fields)}>"
@@ -185,22 +213,36 @@ class Plan:
         """Return this plan with the ids that its outcomes ask for; its ids hold strengths if `known`."""
         points, cases = [], {}
         for point, case in ((point, self._varied(point, known)) for point in self.points):
-            text = canonical_json(canonical(case, has_strengths(self.outcomes)))
+            text = canonical_json(self._base.identity(case, has_strengths(self.outcomes)))
             points.append(Point(id_of_json(text), point.values, text))
             if point.id in self._cases:
                 cases[points[-1].id] = case
         return replace(self, points=points, _cases=cases)
 
-    def _varied(self, point: Point, strengths: bool) -> Case:
+    def _varied(self, point: Point, strengths: bool) -> Any:
         """Return the case of a point from the text of the base case, see :meth:`case`."""
         text, case = self._base.vary(point.values)
-        if case is None or text.placed or run_id(canonical(case, strengths)) != point.id:
+        if case is None or text.placed or run_id(self._base.identity(case, strengths)) != point.id:
             changed = "files of its loads, bodies or materials have changed since the plan was read"
             raise InputError(f"run {point.id}", changed)
         return case
 
-    def case(self, point: Point) -> Case:
-        """Return the case of one point, for :func:`fastpin.solve`.
+    @property
+    def base(self) -> Base:
+        """The base case, or joint file."""
+        return self._base
+
+    @property
+    def problem(self) -> Problem:
+        """The problem of the first point, whose units the outputs have."""
+        return self._base.problem(self.case(self.points[0]))
+
+    def words(self, field: str) -> str:
+        """Words for a varied field: its label, if it has one."""
+        return self.labels.get(field) or self._base.words(field)
+
+    def case(self, point: Point) -> Any:
+        """Return the case of one point, for :func:`fastpin.solve`; or the :class:`fastpin.joints.JointFile`.
 
         Raises
         ------
@@ -297,12 +339,20 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
     outcomes = outcomes_in_text(source, folder, {} if base is None else base.beside(places))
+    if base is not None and not outcomes and not source.faults:
+        outcomes = usual_outcomes(base, swing=False)
     labels = labels_in(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
     fields = {name: spacings[name] for name in places}
     plan = Plan(title, text, fields, axes, [], outcomes, [], labels, base, {})
     return with_points(plan, source, places, rows or [{}], progress)
+
+
+def usual_outcomes(base: Base, swing: bool) -> Outcomes:
+    """Return the outcomes of a plan without any; of numbers with a swing if asked for."""
+    case = base.vary({})[1]
+    return {} if case is None else outcomes_from(base.usual(case, swing), base.beside())
 
 
 def labels_in(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
@@ -345,26 +395,23 @@ def check_root(source: CaseText, keys: Mapping[str, str] = ROOT_KEYS, varied_in:
         if section and key in KEYS:
             hint = '; it belongs in the case file, which a plan names: case = "case.toml"'
         elif owners:
-            hint = f"; a plan varies it in {varied_in}: {_varied(owners[0], key)} = ..."
+            hint = f"; a plan varies it in {varied_in}: {varied_name(owners[0], key)} = ..."
         source.report_unknown(key, hint, where="")
 
 
-def _varied(section: str, key: str) -> str:
-    """The field of a key, as a plan writes it."""
-    return f"load.1.{key}" if section == "load" else f"{section}.{key}"
-
-
-def base_case(source: CaseText, folder: Path) -> BaseCase | None:
-    """Read the base case, and report its faults on the line of the plan's ``case``.
+def base_case(source: CaseText, folder: Path) -> Base | None:
+    """Read the base case, a case file or a joint file, and report its faults on the line of the plan's ``case``.
 
     Numbers of a plan are in the units of its key ``units``, or else in those of the case.
     """
     name, units = source.root.checked("case", checks.any_text), source.root.checked("units", checked_system)
     try:
         if name is None:
-            base = BaseCase(EXAMPLE, "built-in case", folder, units or "")
+            base: Base = BaseCase(EXAMPLE, "built-in case", folder, units or "")
         else:
-            base = BaseCase(read_text(folder / name), name, (folder / name).parent, units or "")
+            text = read_text(folder / name)
+            kind = joints.BaseJoint if _OF_JOINT.search(text) else BaseCase
+            base = kind(text, name, (folder / name).parent, units or "")
         kinds = {ANY: CASE["wear"] | CASE["fatigue"] | CASE["crack"] | CASE["strength"]}
         source.to_si({"outcomes": kinds}, base.is_whole, base.text.root.table.get("units"))
         return base
@@ -374,7 +421,7 @@ def base_case(source: CaseText, folder: Path) -> BaseCase | None:
         return None
 
 
-def _rows(source: CaseText, base: BaseCase | None) -> list[PlanRow]:
+def _rows(source: CaseText, base: Base | None) -> list[PlanRow]:
     """Read places and values of the fields of the [[list]] blocks."""
     value = source.root.value("list")
     blocks = source.blocks("list")
@@ -391,7 +438,7 @@ def _rows(source: CaseText, base: BaseCase | None) -> list[PlanRow]:
 
 
 def _axes(
-    source: CaseText, base: BaseCase | None, places: dict[str, KeyPath], spacings: dict[str, Spacing]
+    source: CaseText, base: Base | None, places: dict[str, KeyPath], spacings: dict[str, Spacing]
 ) -> dict[str, list[Any]]:
     """Read the values of each field of the grid. Add the fields to `places` and `spacings`."""
     axes = {}
@@ -412,7 +459,7 @@ def _axes(
 
 
 def varied_fields(
-    source: CaseText, base: BaseCase | None, table: dict[str, Any], place: KeyPath, parts: tuple[str, ...] = ()
+    source: CaseText, base: Base | None, table: dict[str, Any], place: KeyPath, parts: tuple[str, ...] = ()
 ) -> Iterator[tuple[KeyPath, str, Any]]:
     """Yield place, field and value of all keys of a table.
 
@@ -423,49 +470,12 @@ def varied_fields(
         value = Section(source, place, table).value(key)
         if value is None:  # This fault is reported already.
             continue
-        is_factor = names == ("loads",) and set(value if isinstance(value, dict) else ()) <= set(_RANGE_KEYS)
-        is_section = len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES
-        is_term = names[:2] in PROFILES and isinstance(value, dict) and not set(value) <= set(_RANGE_KEYS)
-        if isinstance(value, dict) and ((is_section and not is_factor) or is_term):
+        if isinstance(value, dict) and (base or BaseCase).is_table(names, set(value) <= set(_RANGE_KEYS)):
             yield from varied_fields(source, base, value, here, names)
-        elif fault := _field_fault(names, base):
+        elif fault := base.fault(names) if base else field_fault(names, None):
             source.report(fault, *here)
         else:
             yield here, ".".join(names), value
-
-
-def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
-    """Return the fault of a field's name, or None."""
-    name, section = ".".join(names), names[0]
-    if section == "loads":
-        hint = "; loads multiplies all loads, and loads.P one of them"
-        return None if name in FACTORS else f'"{name}": is no factor{closest(name, tuple(FACTORS)) or hint}'
-    if section not in KEYS and len(names) == 1 and (owners := sections_with(name)):
-        return f'"{name}": a field is written section.key: {_varied(owners[0], name)}'
-    if section not in KEYS:
-        hint = closest(section, tuple(KEYS)) or f"; sections are {', '.join(KEYS)}"
-        return f'"{name}": there is no section [{section}] in a case file{hint}'
-    if section in UNVARIED:
-        why, outcome = UNVARIED[section]
-        return f'"{name}": {why}; an outcome such as {{ {section} = "{outcome}" }} may have {names[-1]} beside it'
-    if section == "load":
-        if not 3 <= len(names) <= 4 or not names[1].isdecimal():
-            return f'"{name}": a load is written load.N.key, such as load.2.Q in the second [[load]] block'
-        blocks = base.load_blocks if base else math.inf
-        if str(int(names[1])) != names[1] or not 1 <= int(names[1]) <= blocks:
-            return f'"{name}": the case has {blocks or "no"} [[load]] blocks, counted from 1'
-    elif names[:2] in PROFILES and len(names) > 2:
-        fault = part_fault(base.text.root.table if base else {}, names)
-        return f'"{name}": {fault}' if base and fault else None
-    elif len(names) != 2:
-        return f'"{name}": a field is written section.key, such as contact.friction'
-    if names[2:3] in LOAD_TABLES and (len(names) == 3 or names[3] not in LOADS):
-        return f'"{name}": write one load of {names[2]}, such as load.{names[1]}.{names[2]}.Q'
-    if len(names) == 4 and names[2:3] not in LOAD_TABLES:
-        return f'"{name}": only mean, amplitude and phase of a block have loads of their own'
-    if names[2:3] not in LOAD_TABLES and names[-1] not in KEYS[section]:
-        return f'"{name}": there is no key "{names[-1]}" in [{section}]{key_hint(section, names[-1])}'
-    return other_units(base.text.root.table, name) if base else None
 
 
 def range_in(
@@ -511,7 +521,7 @@ def with_points(
     of their own, and one doubt of each field.
     """
     base, axes, strengths = plan._base, plan.axes, has_strengths(plan.outcomes)
-    cases: dict[str, Case] = {}
+    cases: dict[str, Any] = {}
     doubted: dict[str, tuple[InputWarning, list[dict[str, Any]]]] = {}
     points: list[Point] = []
     faults: dict[tuple[KeyPath, str], list[dict[str, Any]]] = {}
@@ -527,12 +537,12 @@ def with_points(
             faults.setdefault((sites[pair[1]], f"{pair[1]}: can't be given together with {pair[0]}"), []).append(values)
             continue
         text, case = base.vary(values)
-        for place, message in text.placed:
-            faults.setdefault(_locate_fault(base, _sites(places, row), values, place, message), []).append(values)
+        for fault in {base.locate(_sites(places, row), values, *placed): None for placed in text.placed}:
+            faults.setdefault(fault, []).append(values)
         if case is not None and not text.placed:
-            for doubt in doubts(case.problem, case.history, case.options):
+            for doubt in base.doubts(case):
                 doubted.setdefault(doubt.field, (doubt, []))[1].append(values)
-            input_text = canonical_json(canonical(case, strengths))
+            input_text = canonical_json(base.identity(case, strengths))
             points.append(Point(id_of_json(input_text), values, input_text))
             if len(cases) < MOST_CASES and not reads_files(text.root.table):
                 cases[points[-1].id] = case
@@ -551,27 +561,6 @@ def with_points(
 def _sites(places: dict[str, KeyPath], row: PlanRow) -> dict[str, KeyPath]:
     """The places of the fields of a run. `places` are those of the first one of every field."""
     return places | {name: place for name, (place, _) in row.items()}
-
-
-def _locate_fault(
-    base: BaseCase, places: dict[str, KeyPath], values: dict[str, Any], place: KeyPath, message: str
-) -> tuple[KeyPath, str]:
-    """Return the place of a run's fault in the plan, and its message there."""
-    parts = [str(part + 1) if isinstance(part, int) else part for part in place]
-    name = ".".join(parts)
-    if place in PROFILES:
-        whole = f"{parts[0]}.{message}"
-        field, _, reason = whole.partition(": ")
-        own = field if field in values else next((each for each in values if each.startswith(f"{name}.")), "")
-        if own or name in values:
-            return places[own or name], f"{own}: {reason}" if own else whole
-    if name in values:
-        return places[name], f"{name}: {message.removeprefix(f'{parts[-1]}: ')}"
-    line = base.text.line(*place)
-    same_section = [field_name for field_name in values if parts and field_name.split(".")[0] == parts[0]]
-    if same_section and (not line or line == base.text.line(*place[:1])):  # The plan makes or changes this section.
-        return places[same_section[0]], f"{same_section[0]}: {message}"
-    return ("case",), f"{base.name}{f', line {line}' if line else ''}: {message}"
 
 
 def _which(runs: list[dict[str, Any]], count: int) -> str:

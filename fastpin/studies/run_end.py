@@ -81,14 +81,41 @@ RUN_COLUMNS: dict[str, str] = {
 """Columns of the index of a sweep, besides the varied fields, and their SQL types."""
 
 
+JOINT_FIGURES: dict[str, StudyOutcome] = {
+    "states": KEY_FIGURES["states"],
+    "dissipation": StudyOutcome(
+        "energy", "", "", lambda result: float(sum(
+            contact.dissipation * plate.thickness
+            for contact, (_, plate) in zip(result[-1].contacts, result.joint.sections, strict=True)
+        )),
+    ),
+    "max_pressure": StudyOutcome(
+        "traction", "", "", lambda result: max((
+            float(state.peak_pressure) for place in range(len(result.joint.sections))
+            for state in result.states.section(place) if state.in_contact
+        ), default=0.0),
+    ),
+    "residual": StudyOutcome(
+        "", "", "", lambda result: max(max(state.residuals.values()) for state in result.states.bare)
+    ),
+    "nodes": StudyOutcome("", "", "", lambda result: result.nodes),
+}  # fmt: skip
+"""The key figures of a joint: those of its contacts together. The dissipation is that of the whole thickness, J."""
+
+
+def figures_of(figures: dict[str, StudyOutcome], result: Any) -> dict[str, Any]:
+    """Return the values of key figures; None for all others."""
+    return {name: _number(figures[name], result) if name in figures else None for name in KEY_FIGURES}
+
+
 def key_figures(result: Result) -> dict[str, Any]:
     """Return the key figures of a result with at least one state, by name.
 
     Angles and widths are in degrees. None stands for a figure that an open contact does not have. A result whose
     history was not followed to the end has only the numbers of states and nodes.
     """
-    known = KEY_FIGURES if result.complete else ("states", "nodes")
-    return {name: _number(each, result) if name in known else None for name, each in KEY_FIGURES.items()}
+    known = KEY_FIGURES if result.complete else {name: KEY_FIGURES[name] for name in ("states", "nodes")}
+    return figures_of(known, result)
 
 
 def _number(figure: StudyOutcome, result: Result) -> int | float | None:

@@ -25,17 +25,15 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, check_callable, file_path, instance, items, true_or_false, whole_number
 from fastpin.model.inputs import HDF5_SIGNATURE
-from fastpin.model.keys import kind_of
-from fastpin.model.units import Unit, units, units_per_thickness
+from fastpin.model.units import Unit, units
 from fastpin.runtime.threads import cores
-from fastpin.storage import store
 from fastpin.storage.files import INDEX, forget_temporaries, replacing
 from fastpin.storage.packed import FOLDER
 from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory, has_index, lock_directory
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, SweepProgress
-from fastpin.studies.run_end import KEY_FIGURES, bar_column
-from fastpin.studies.variation import field_words
+from fastpin.studies.run_end import JOINT_FIGURES, KEY_FIGURES, bar_column
+from fastpin.studies.run_kinds import RUNS, OfCases, OfJoints
 from fastpin.studies.workers import Work, pickled_outcomes
 
 if TYPE_CHECKING:  # they import compiled code, and a plan is read without it
@@ -170,7 +168,7 @@ def run(
                     index.record_outcomes(ends)
                     count.add(len(ends))
             if files:
-                _write_files(index, points, results)
+                _write_files(RUNS[plan.base.form], index, points, results)
             summary = _summary(index, plan, points, results)
             return replace(summary, ended=len(todo), seconds=time.perf_counter() - began, read=len(missing))
 
@@ -327,14 +325,13 @@ class _Counter:
             self._report(self._ended, self.total)
 
 
-def _write_files(index: Index, points: Iterable[str], results: Path) -> None:
+def _write_files(way: type[OfCases | OfJoints], index: Index, points: Iterable[str], results: Path) -> None:
     """Write the results of finished runs that are only in the index to files."""
     for run, (state, _) in _now(index, points, results).items():
         path = results / f"{run}.h5"
         content = None if state != DONE or path.exists() else index.content(run)
         if content is not None:
-            sections = store.unpack_sections(content, path)
-            store.save(store.unpack(content, path), path, restart=False, sections=sections)
+            way.write(path, content)
 
 
 def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[str, str | None]]:
@@ -479,7 +476,8 @@ def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
 
 
 def _check_agreement(first_row: dict[str, Any], second_row: dict[str, Any], source: Path) -> None:
-    for name in ("states", "nodes", "peak_pressure", "max_pressure", "contact_width"):
+    names = "states", "nodes", "peak_pressure", "max_pressure", "contact_width"
+    for name in (each for each in names if each in JOINT_FIGURES or "joint" not in first_row["input"]):
         first, second = first_row[name], second_row[name]
         if first is None or second is None:
             raise InputError(str(source), f"run {first_row['id']} is done, but has no {name}")
@@ -537,13 +535,13 @@ def _coordinate(values: Sequence[Any]) -> np.ndarray:
 
 def _field_attributes(plan: Plan, name: str) -> NamedAttributes:
     """Unit and words of a varied field. Its values are in the units of the case file."""
-    unit = units(plan.case(plan.points[0]).problem).get(kind_of(name))
-    return {"units": unit.name if unit else "", "long_name": plan.labels.get(name, field_words(name))}
+    unit = units(plan.problem).get(plan.base.kind(name))
+    return {"units": unit.name if unit else "", "long_name": plan.words(name)}
 
 
 def _attributes(plan: Plan, rows: Sequence[Mapping[str, Any]], name: str) -> NamedAttributes:
     """Unit and words of an outcome or a key figure, per metre of thickness as in :func:`fastpin.studies.sweep.load`."""
-    names = units_per_thickness(plan.case(plan.points[0]).problem)
+    names = plan.base.unit_names(plan.case(plan.points[0]))
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
         names = {}
     number = plan.numbers[name]

@@ -24,16 +24,14 @@ import numpy as np
 from fastpin.assess.outputs import ROUNDING
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, parse_text, read_text
 from fastpin.errors import InputError
-from fastpin.model import Case, Problem, points
 from fastpin.model.checks import as_toml, check_callable, file_path, string, true_or_false, whole_number
 from fastpin.model.doubts import warn_of
-from fastpin.model.keys import kind_of
-from fastpin.model.units import in_units
 from fastpin.studies.index import DONE
-from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
+from fastpin.studies.outcome_tables import outcomes_in_text
 from fastpin.studies.plan import (
     MAX_RUNS,
     ROOT_KEYS,
+    Base,
     Plan,
     PlanRow,
     Spacing,
@@ -42,12 +40,12 @@ from fastpin.studies.plan import (
     check_root,
     labels_in,
     range_in,
+    usual_outcomes,
     varied_fields,
     with_points,
 )
 from fastpin.studies.run_end import KEY_FIGURES
 from fastpin.studies.sweep import rows
-from fastpin.studies.variation import FACTORS, BaseCase
 
 PERCENTS = (5, 50, 95)
 """Percentiles of the samples."""
@@ -62,14 +60,6 @@ KEYS = {name: words for name, words in ROOT_KEYS.items() if name not in ("grid",
     "tolerances": "[tolerances]", "corners": "corners", "samples": "samples", "seed": "seed"
 }  # fmt: skip
 """Keys of a tolerance plan, as they are written."""
-
-USUAL_OUTCOMES = {
-    "largest_pressure": {"quantity": "peak_pressure", "take": "largest"},
-    "largest_shear": {"quantity": "peak_shear", "take": "largest magnitude"},
-    "largest_hoop": {"quantity": "peak_hoop", "take": "largest"},
-    "least_bush_pressure": {"quantity": "bush_open_margin", "take": "smallest"},
-}
-"""The outcomes of a plan without [outcomes], as far as the joint has them: over all kept states."""
 
 
 class Reached(NamedTuple):
@@ -372,8 +362,8 @@ def _study(source: CaseText, text: str, folder: Path, progress: SweepProgress | 
     for name, outcome in outcomes.items():
         if outcome.classes:
             source.report(_no_swing(name), "outcomes", name)
-    if not outcomes and case is not None:
-        outcomes = _usual_outcomes(case.problem)
+    if base is not None and not outcomes and case is not None:
+        outcomes = usual_outcomes(base, swing=True)
     with_corners, count, seed = _extent(source, len(places))
     labels = labels_in(source, (*places, *outcomes, *KEY_FIGURES))
     if base is None or source.faults:
@@ -388,7 +378,7 @@ def _study(source: CaseText, text: str, folder: Path, progress: SweepProgress | 
     return Tolerances(with_points(plan, source, places, plan_rows, progress), limits, alone, corners, samples)
 
 
-def _limits(source: CaseText, base: BaseCase, case: Case, given: tuple[KeyPath, str, Any]) -> FieldLimits | None:
+def _limits(source: CaseText, base: Base, case: Any, given: tuple[KeyPath, str, Any]) -> FieldLimits | None:
     """Read the limits of a field, given by its place, its name and its value in the text. None with a fault."""
     place, name, value = given
     before = len(source.placed)
@@ -399,12 +389,12 @@ def _limits(source: CaseText, base: BaseCase, case: Case, given: tuple[KeyPath, 
         source.report(f"{name}: must be limits such as {{ from = 0.1, to = 0.6 }}, not {as_toml(value)}", *place)
         return None
     values, spacing = range_in(source, place, name, value, 2)
-    nominal = _nominal(base, case, name)
+    nominal = base.nominal(case, name)
     if len(source.placed) > before:
         return None
     if values[0] >= values[-1]:
         source.report(f"{name}: from must lie below to, but {values[0]:g} is not below {values[-1]:g}", *place)
-    elif name in FACTORS and not any(case.history.largest.get(load) for load in FACTORS[name]):
+    elif name.partition(".")[0] == "loads" and base.is_idle(case, name):
         source.report(f"{name}: the case has no such load, and a factor would change nothing", *place)
     elif nominal is None:
         words = f"{name}: the case has no number for it, which would be the nominal value"
@@ -416,41 +406,6 @@ def _limits(source: CaseText, base: BaseCase, case: Case, given: tuple[KeyPath, 
     else:
         return FieldLimits(nominal, tuple(sorted({*values, nominal})), spacing)
     return None
-
-
-def _nominal(base: BaseCase, case: Case, name: str) -> float | None:
-    """Return the value of a field in the case: from its text, or else from its materials and defaults."""
-    if name in FACTORS:
-        return 1.0
-    section, *keys = name.split(".")
-    value: Any = base.text.root.table.get(section)
-    if section == "load" and isinstance(value, dict):
-        value = [value]
-    for key in keys:
-        if isinstance(value, list):
-            value = value[int(key) - 1] if key.isdecimal() and 1 <= int(key) <= len(value) else None
-        else:
-            value = value.get(key) if isinstance(value, dict) else None
-    problem = case.problem
-    owners: dict[str, Any] = {
-        "contact": problem, "pin": problem.pair.pin, "plate": problem.pair.plate, "pin_body": problem.pin_body,
-        "plate_body": problem.plate_body,
-    }  # fmt: skip
-    if value is None and section in owners and len(keys) == 1:
-        owner = owners[section]
-        written = owner.toml() if section == "plate" else {}  # the axis of a laminate is in degrees there
-        value = written.get(keys[0], getattr(owner, keys[0], getattr(getattr(owner, "material", None), keys[0], None)))
-        value = in_units(problem, value, kind_of(name))
-    is_number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    return value if is_number else None
-
-
-def _usual_outcomes(problem: Problem) -> Outcomes:
-    """Return the outcomes of a plan without any."""
-    without = set() if "plate" in points.elastic_bodies(problem) else {"largest_hoop"}
-    if problem.plate_body.bush is None:
-        without.add("least_bush_pressure")
-    return outcomes_from({name: table for name, table in USUAL_OUTCOMES.items() if name not in without})
 
 
 def _extent(source: CaseText, fields: int) -> tuple[bool, int, int]:

@@ -8,30 +8,35 @@ body replaces the keys of other kinds. A factor, ``loads`` or ``loads.P``, multi
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from fastpin.assess.crack import passes_of
+from fastpin.assess.questions import QUESTIONS
 from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
-from fastpin.casefile.materials import known_materials
-from fastpin.casefile.profiles import PROFILES, varied
-from fastpin.casefile.reader import SharedParts, case_from
-from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
-from fastpin.errors import CaseFileError, InputError
+from fastpin.casefile.materials import known_materials, make_room
+from fastpin.casefile.profiles import PROFILES, part_fault, varied
+from fastpin.casefile.reader import KEYS, SharedParts, case_from, key_hint, sections_with
+from fastpin.casefile.toml_text import CaseText, KeyPath, TooManyFaultsError
+from fastpin.errors import CaseFileError, InputError, InputWarning
+from fastpin.model import points
 from fastpin.model.acting import check_loads
 from fastpin.model.case import Case, questions_of
 from fastpin.model.checks import number
+from fastpin.model.doubts import doubts
 from fastpin.model.fields import FIELDS
-from fastpin.model.growth import law_entries
-from fastpin.model.keys import CASE, MATERIAL
-from fastpin.model.laminate import LAMINATE_KEYS, MODULI
+from fastpin.model.keys import CASE, kind_of
 from fastpin.model.loads import ACTING, LOAD, LOADS
-from fastpin.model.materials import MATERIALS, NUMBERS, Material
+from fastpin.model.materials import MATERIALS, Material
+from fastpin.model.problem import Problem
+from fastpin.model.synonyms import closest
 from fastpin.model.unit_systems import SI, is_system
-from fastpin.model.units import in_other_units, in_units_of
+from fastpin.model.units import in_other_units, in_units, units_per_thickness
 from fastpin.states.error_bars import check_nodes
+from fastpin.studies.identity import canonical
 
 LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
 """Keys of a [[load]] block that are tables of loads."""
@@ -39,12 +44,22 @@ LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
 FACTORS = {"loads": LOADS[:ACTING], **{f"loads.{name}": (name,) for name in LOADS[:ACTING]}}
 """Fields that are factors, and the loads that each multiplies. They are no keys of a case."""
 
+USUAL_OUTCOMES = {
+    "largest_pressure": {"quantity": "peak_pressure", "take": "largest"},
+    "largest_shear": {"quantity": "peak_shear", "take": "largest magnitude"},
+    "largest_hoop": {"quantity": "peak_hoop", "take": "largest"},
+    "least_bush_pressure": {"quantity": "bush_open_margin", "take": "smallest"},
+}
+"""The outcomes of a plan without [outcomes], as far as the joint has them: over all kept states."""
+
 
 class BaseCase:
     """The base case of a plan.
 
     Attributes
     ----------
+    form : str
+        The kind of its file.
     text : CaseText
         Its text, in the units of the plan.
     is_whole : bool
@@ -66,6 +81,8 @@ class BaseCase:
     CaseFileError
         With the faults of the TOML text.
     """
+
+    form = "case file"
 
     def __init__(self, text: str, name: str, folder: Path, units: str = "") -> None:
         self.name = name
@@ -118,6 +135,116 @@ class BaseCase:
                 text.report(str(error), "solve", error.field)
         return text, case
 
+    @staticmethod
+    def is_table(names: tuple[str, ...], is_range: bool) -> bool:
+        """Whether a table at this name holds fields. If `is_range`, it has the keys of a range only."""
+        is_section = len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES
+        if is_section and not (names == ("loads",) and is_range):
+            return True
+        return names[:2] in PROFILES and not is_range
+
+    def fault(self, names: tuple[str, ...]) -> str | None:
+        """Return the fault of a field's name, or None."""
+        return field_fault(names, self)
+
+    def locate(
+        self, places: Mapping[str, KeyPath], values: Mapping[str, Any], place: KeyPath, message: str
+    ) -> tuple[KeyPath, str]:
+        """Return the place of a run's fault in the plan, and its message there.
+
+        `places` are those of the fields in the plan, `values` the fields of the run.
+        """
+        parts = [str(part + 1) if isinstance(part, int) else part for part in place]
+        name = ".".join(parts)
+        if place in PROFILES:
+            whole = f"{parts[0]}.{message}"
+            field, _, reason = whole.partition(": ")
+            own = field if field in values else next((each for each in values if each.startswith(f"{name}.")), "")
+            if own or name in values:
+                return places[own or name], f"{own}: {reason}" if own else whole
+        if name in values:
+            return places[name], f"{name}: {message.removeprefix(f'{parts[-1]}: ')}"
+        line = self.text.line(*place)
+        same_section = [field_name for field_name in values if parts and field_name.split(".")[0] == parts[0]]
+        if same_section and (not line or line == self.text.line(*place[:1])):  # The plan makes or changes this section.
+            return places[same_section[0]], f"{same_section[0]}: {message}"
+        return ("case",), f"{self.name}{f', line {line}' if line else ''}: {message}"
+
+    def nominal(self, case: Case, name: str) -> float | None:
+        """Return the value of a field in the case: from its text, or else from its materials and defaults."""
+        if name in FACTORS:
+            return 1.0
+        section, *keys = name.split(".")
+        value: Any = self.text.root.table.get(section)
+        if section == "load" and isinstance(value, dict):
+            value = [value]
+        for key in keys:
+            if isinstance(value, list):
+                value = value[int(key) - 1] if key.isdecimal() and 1 <= int(key) <= len(value) else None
+            else:
+                value = value.get(key) if isinstance(value, dict) else None
+        problem = case.problem
+        owners: dict[str, Any] = {
+            "contact": problem, "pin": problem.pair.pin, "plate": problem.pair.plate, "pin_body": problem.pin_body,
+            "plate_body": problem.plate_body,
+        }  # fmt: skip
+        if value is None and section in owners and len(keys) == 1:
+            owner = owners[section]
+            written = owner.toml() if section == "plate" else {}  # the axis of a laminate is in degrees there
+            value = written.get(
+                keys[0], getattr(owner, keys[0], getattr(getattr(owner, "material", None), keys[0], None))
+            )
+            value = in_units(problem, value, kind_of(name))
+        is_number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+        return value if is_number else None
+
+    def is_idle(self, case: Case, factor: str) -> bool:
+        """Whether a factor would change nothing."""
+        return not any(case.history.largest.get(load) for load in FACTORS[factor])
+
+    @staticmethod
+    def usual(case: Case, swing: bool) -> dict[str, Any]:
+        """Return the tables of the outcomes of a plan without any, by name; of numbers with a `swing` if asked for."""
+        without = set() if "plate" in points.elastic_bodies(case.problem) else {"largest_hoop"}
+        if case.problem.plate_body.bush is None:
+            without.add("least_bush_pressure")
+        return {name: table for name, table in USUAL_OUTCOMES.items() if name not in without} if swing else {}
+
+    @staticmethod
+    def doubts(case: Case) -> list[InputWarning]:
+        """Return what is probably a mistake in a case."""
+        return doubts(case.problem, case.history, case.options)
+
+    @staticmethod
+    def identity(case: Case, strengths: bool) -> dict[str, Any]:
+        """Return the complete input of a run, see :func:`fastpin.studies.identity.canonical`."""
+        return canonical(case, strengths)
+
+    @staticmethod
+    def problem(case: Case) -> Problem:
+        """Return the problem whose units the outputs have."""
+        return case.problem
+
+    @staticmethod
+    def drawn(case: Case) -> Problem | None:
+        """Return the problem that stands below figures."""
+        return case.problem
+
+    @staticmethod
+    def unit_names(case: Case) -> dict[str, str]:
+        """Return the unit of every kind of quantity in the index, and in Python."""
+        return units_per_thickness(case.problem)
+
+    @staticmethod
+    def kind(field: str) -> str:
+        """Return the kind of a field; empty if it has no unit."""
+        return kind_of(field)
+
+    @staticmethod
+    def words(field: str) -> str:
+        """Return words for a field."""
+        return field_words(field)
+
 
 def _scaled(text: CaseText, case: Case, factors: Mapping[str, Any]) -> Case:
     """Return the case with its loads multiplied by factors. Report the faults of a factor on its name."""
@@ -138,20 +265,51 @@ def _scaled(text: CaseText, case: Case, factors: Mapping[str, Any]) -> Case:
     return replace(case, history=history)
 
 
-_ISOTROPIC = ("material", "E", "nu", "rigid", "fatigue", "growth", *NUMBERS)
-
-_REPLACED: dict[str, tuple[str, ...]] = {
-    "material": ("E", "nu", "rigid", "fatigue", "growth", *NUMBERS, *LAMINATE_KEYS),
-    "E": ("material", "rigid", *LAMINATE_KEYS),
-    "nu": ("material", "rigid", *LAMINATE_KEYS),
-    "rigid": ("material", "E", "nu", "fatigue", "growth", *NUMBERS, *LAMINATE_KEYS),
-    **dict.fromkeys(("layup", "ply"), (*_ISOTROPIC, *MODULI, "compliance")),
-    **dict.fromkeys(MODULI, (*_ISOTROPIC, "layup", "ply", "compliance")),
-    "compliance": (*_ISOTROPIC, "layup", "ply", *MODULI),
-    "ring_outer_radius": ("reaction",),
-    "reaction": ("ring_outer_radius", "support"),
+UNVARIED = {
+    "wear": ("no run of a sweep wears", "depth"),
+    **{name: (question.unvaried, next(iter(question.outcomes))) for name, question in QUESTIONS.items()},
 }
-"""Keys of the base case that each key of the sections of bodies and their materials replaces, in the same section."""
+"""Sections whose keys no plan varies: the reason, and an outcome that has the keys."""
+
+
+def varied_name(section: str, key: str) -> str:
+    """The field of a key, as a plan writes it."""
+    return f"load.1.{key}" if section == "load" else f"{section}.{key}"
+
+
+def field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
+    """Return the fault of a field's name, or None."""
+    name, section = ".".join(names), names[0]
+    if section == "loads":
+        hint = "; loads multiplies all loads, and loads.P one of them"
+        return None if name in FACTORS else f'"{name}": is no factor{closest(name, tuple(FACTORS)) or hint}'
+    if section not in KEYS and len(names) == 1 and (owners := sections_with(name)):
+        return f'"{name}": a field is written section.key: {varied_name(owners[0], name)}'
+    if section not in KEYS:
+        hint = closest(section, tuple(KEYS)) or f"; sections are {', '.join(KEYS)}"
+        return f'"{name}": there is no section [{section}] in a case file{hint}'
+    if section in UNVARIED:
+        why, outcome = UNVARIED[section]
+        return f'"{name}": {why}; an outcome such as {{ {section} = "{outcome}" }} may have {names[-1]} beside it'
+    if section == "load":
+        if not 3 <= len(names) <= 4 or not names[1].isdecimal():
+            return f'"{name}": a load is written load.N.key, such as load.2.Q in the second [[load]] block'
+        blocks = base.load_blocks if base else math.inf
+        if str(int(names[1])) != names[1] or not 1 <= int(names[1]) <= blocks:
+            return f'"{name}": the case has {blocks or "no"} [[load]] blocks, counted from 1'
+    elif names[:2] in PROFILES and len(names) > 2:
+        fault = part_fault(base.text.root.table if base else {}, names)
+        return f'"{name}": {fault}' if base and fault else None
+    elif len(names) != 2:
+        return f'"{name}": a field is written section.key, such as contact.friction'
+    if names[2:3] in LOAD_TABLES and (len(names) == 3 or names[3] not in LOADS):
+        return f'"{name}": write one load of {names[2]}, such as load.{names[1]}.{names[2]}.Q'
+    if len(names) == 4 and names[2:3] not in LOAD_TABLES:
+        return f'"{name}": only mean, amplitude and phase of a block have loads of their own'
+    if names[2:3] not in LOAD_TABLES and names[-1] not in KEYS[section]:
+        return f'"{name}": there is no key "{names[-1]}" in [{section}]{key_hint(section, names[-1])}'
+    return other_units(base.text.root.table, name) if base else None
+
 
 _FILE = "history.csv"
 
@@ -243,22 +401,10 @@ def _make_room(tables: dict[str, Any], name: str, value: Any, materials: Mapping
         return
     if section in BODY_KINDS:
         _drop_other_kinds(body, BODY_KINDS[section], key, value)
-    if section not in ("pin", "plate", "plate_body") or (key == "rigid" and value is not True):
-        return
-    material_name = body.get("material")
-    if key in ("E", "nu") and isinstance(material_name, str) and material_name in materials:
-        # One constant is varied. The other constants of the material stay.
-        material = materials[material_name]
-        constants: dict[str, Any] = {"E": material.E, "nu": material.nu, **material.numbers}
-        if material.fatigue is not None:
-            constants["fatigue"] = material.fatigue.given()
-        if material.growth is not None:
-            constants["growth"] = law_entries(material.growth)
-        system = tables.get("units", SI)
-        constants = in_units_of(constants, MATERIAL, system if is_system(system) else SI, None)
-        body |= {name: value for name, value in constants.items() if name in ("E", "nu") or name not in body}
-    for replaced in _REPLACED.get(key, ()):
+    for replaced in {"ring_outer_radius": ("reaction",), "reaction": ("ring_outer_radius", "support")}.get(key, ()):
         body.pop(replaced, None)
+    if section in ("pin", "plate", "plate_body"):
+        make_room(body, key, value, materials, tables.get("units", SI))
 
 
 def _drop_other_kinds(body: dict[str, Any], kinds: Kinds, key: str, value: Any) -> None:

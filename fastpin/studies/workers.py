@@ -24,17 +24,15 @@ from typing import Any, TypeVar
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError, InputError
-from fastpin.model.case import Case, beside_of
 from fastpin.model.doubts import doubts_given
 from fastpin.runtime.jit import limit_to_one_thread
 from fastpin.runtime.threads import in_one_thread
-from fastpin.solver import SolveError, solve
-from fastpin.solver.result import Result, without_restart
-from fastpin.storage import layout, store
+from fastpin.storage import layout
 from fastpin.studies.index import Index
 from fastpin.studies.outcomes import OutcomeValue, check_loadable, pickled, values_in_worker
 from fastpin.studies.plan import Plan
-from fastpin.studies.run_end import RunEnd, key_bars, key_figures
+from fastpin.studies.run_end import RunEnd
+from fastpin.studies.run_kinds import RUNS
 from fastpin.version import __version__
 
 K = TypeVar("K")
@@ -233,11 +231,14 @@ class Setting:
         Version of fastpin in the sweep. Another version in a worker is a failure.
     most : int
         Largest packed result, bytes. A larger result gets a file of its own; 0: every result.
+    form : str
+        The kind of the base file, see :data:`fastpin.studies.run_kinds.RUNS`.
     """
 
     main_process: int
     version: str
     most: int
+    form: str = "case file"
 
     def begin(self) -> str | None:
         """Limit the threads of a worker. Return why it can't work for this sweep, or None."""
@@ -247,14 +248,14 @@ class Setting:
         return None if self.version == __version__ else other
 
 
-def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:
-    """Solve one case, pack or save its result, and read its outcomes.
+def solve_run(run: str, case: Any, path: str, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:
+    """Solve one case or joint, pack or save its result, and read its outcomes.
 
     Parameters
     ----------
     run : str
         Id of the run.
-    case : Case
+    case : Case or JointFile
     path : str
         HDF5 file of a result that is too large to be packed. It is written only if there is a state.
     outcomes : dict of str to (str, bytes)
@@ -271,22 +272,17 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, settin
         return RunEnd(run, refused)
     started, host = datetime.now(UTC).isoformat(timespec="milliseconds"), socket.gethostname()
     ended = functools.partial(RunEnd, run, started=started, host=host, versions=layout.versions())
-    began, reason = time.perf_counter(), None
+    began, way = time.perf_counter(), RUNS[setting.form]
     try:
-        try:
-            with in_one_thread(), doubts_given():
-                result: Result | None = solve(case.problem, case.history, **case.options.keywords())
-        except SolveError as error:
-            reason, result = str(error), error.result
+        with in_one_thread(), doubts_given():
+            solved = way.solve(case)
+        result, reason = solved
         seconds = time.perf_counter() - began
         if result is None or not len(result):
             return ended(reason, seconds=seconds)
-        figures, bars, sections = key_figures(result), key_bars(result), beside_of(case)
-        content = store.pack(result, reason, setting.most, sections)
-        if content is None:
-            store.save(result, path, error=reason, restart=False, sections=sections)
-        # Without its restart, the result is the same as the stored one.
-        values = values_in_worker(outcomes, without_restart(result)) if reason is None else {}
+        figures, bars = way.figures(result)
+        content = way.keep(case, solved, path, setting.most)
+        values = values_in_worker(outcomes, way.judged(result)) if reason is None else {}
         return ended(reason, figures, seconds, outcomes=values, bars=bars, content=content)
     except MemoryError:
         return ended("not enough memory", seconds=time.perf_counter() - began)
@@ -308,7 +304,7 @@ def read_run(run: str, path: str, content: bytes | None, outcomes: PickledOutcom
         return RunEnd(run, refused)
     began = time.perf_counter()
     try:
-        result = store.load(path) if content is None else store.unpack(content, Path(path))
+        result = RUNS[setting.form].read(path, content)
     except Exception as error:  # The other runs continue.
         return RunEnd(run, f"the result can't be read: {error}")
     values = values_in_worker(outcomes, result)
@@ -362,7 +358,7 @@ class Work:
     files: bool
 
     def __post_init__(self) -> None:
-        self._setting = Setting(os.getpid(), __version__, 0 if self.files else MOST_PACKED)
+        self._setting = Setting(os.getpid(), __version__, 0 if self.files else MOST_PACKED, self.plan.base.form)
 
     def solve(self, todo: Collection[str]) -> Endings:
         """Yield the ends of the runs of each batch when it ends.

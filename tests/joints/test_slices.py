@@ -193,7 +193,7 @@ def test_a_file_gives_slices_and_heads() -> None:
         ({"heads": -1.0}, 'heads: must not be negative, not -1; or "free" or "held"'),
         ({"flexibility": "soft"}, 'flexibility: must be "beam", not "soft"'),
         ({"flexibility": 0.0, "heads": "held"}, 'heads: needs a pin that bends, flexibility = "beam"'),
-        ({"clamp": Clamp(1e3, 0.2)}, "clamp: pin pin can't clamp near, which has slices"),
+        ({"clamp": Clamp(1e3, 0.2)}, "pin.pin.clamp: pin pin can't clamp near, which has slices"),
     ],
 )
 def test_bad_slices_and_heads_are_refused(change: dict[str, Any], words: str) -> None:
@@ -219,7 +219,9 @@ def test_only_own_parts_of_a_plate_are_held_and_loaded() -> None:
 def test_a_beam_needs_enough_slices() -> None:
     joint = lap((0.1, 0.1), 0.3)
     pins = tuple(replace(pin, flexibility="beam") for pin in joint.pins)
-    words = f"slices: pin {pins[0].name} is a beam and needs 3 slices in all its plates, or heads"
+    words = (
+        f"pin.{pins[0].name}.flexibility: pin {pins[0].name} is a beam and needs 3 slices in all its plates, or heads"
+    )
     assert str(refused(Joint, joint.plates, pins)) == words
     Joint(joint.plates, tuple(replace(pin, heads="held") for pin in pins))
 

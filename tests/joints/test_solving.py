@@ -327,20 +327,26 @@ FREE = JointPlate("free", STEEL, 1.0, rectangle((-4.0, 4.0), (-4.0, 4.0)))
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: in_sheet(0.0, 2.05), "at: the holes of p0 and p1 in sheet are 2.05 m apart; they need 1.1 diameters"),
-        (lambda: Joint((SHEET,), (JointPin("a", 0, STEEL, 1.0, ("skin",)),)), 'plates: must be "sheet", not "skin"'),
+        (
+            lambda: in_sheet(0.0, 2.05),
+            "pin.p1.at: the holes of p0 and p1 in sheet are 2.05 m apart",
+        ),
+        (
+            lambda: Joint((SHEET,), (JointPin("a", 0, STEEL, 1.0, ("skin",)),)),
+            'pin.a.plates: must be "sheet", not "skin"',
+        ),
         (
             lambda: Joint((SHEET, JointPlate("b", STEEL, 1.0)), in_sheet(0.0).pins),
-            "moves: the plate sheet is",
+            "plate.b.moves: the plate sheet is",
         ),
         (
             lambda: Joint((JointPlate("b", STEEL, 1.0), SHEET), in_sheet(0.0).pins),
-            "plates: no pin goes",
+            "plate.b: no pin goes",
         ),
         (lambda: JointPin("a", 0, STEEL, 1.0, ()), "plates: pin a goes through no plate"),
         (lambda: JointPin("a", 0, STEEL, 1.0, ("s", "s")), "plates: pin a goes through a plate twice"),
         (lambda: JointPin("a", 0, STEEL, 1.0, ("s",), clearance={}), "clearance: has no value for the plate s"),
-        (lambda: in_sheet(0.0, friction=-1.0), "friction: pin p0 in sheet: must not be negative, not -1"),
+        (lambda: in_sheet(0.0, friction=-1.0), "pin.p0.friction: in sheet: must not be negative, not -1"),
         (lambda: JointPlate("a.b", STEEL, 1.0), 'name: must be a text without a dot, not "a.b"'),
         (
             lambda: JointPlate("a", STEEL, 1.0, supports={"left": "both"}),
@@ -349,7 +355,7 @@ FREE = JointPlate("free", STEEL, 1.0, rectangle((-4.0, 4.0), (-4.0, 4.0)))
         (lambda: Joint((SHEET,), (*in_sheet(0.0).pins, *in_sheet(0.0).pins)), 'name: two parts are called "p0"'),
         (
             lambda: Joint((FREE,), (JointPin("a", 0, STEEL, 1.0, ("free",)),)),
-            "plate free: support: the supports leave a rigid motion",
+            "plate.free: support: the supports leave a rigid motion",
         ),
         (lambda: solve_joint(in_sheet(0.0), []), "corners: must have at least one corner"),
         (lambda: solve_joint(in_sheet(0.0), [{"p0.z": 1.0}]), 'corner 1: must be "sheet.sxx"'),

@@ -195,7 +195,9 @@ def faults(text: str, folder: Path) -> list[tuple[int, str]]:
     return faults_of(parse_plan, f"[grid]\nsolve.nodes = [41]\n[outcomes]\n{text}", folder=folder)
 
 
-ONE_KEY = "must have one of the keys quantity, cycle, wear, fatigue, crack, strength, margin, function, such as {"
+ONE_KEY = (
+    "must have one of the keys quantity, cycle, wear, fatigue, crack, strength, margin, joint, function, such as {"
+)
 
 
 def test_all_faults_of_the_table_come_at_once_with_their_lines(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from fastpin.model.angles import interval_from_bottom
 from fastpin.runtime.threads import works_alone
 from fastpin.storage import store
 from fastpin.storage.packed import INDEX
-from fastpin.studies import run_end, sweep, workers
+from fastpin.studies import run_end, run_kinds, sweep, workers
 from fastpin.studies.identity import id_of_json
 from fastpin.studies.index import lock_directory
 from fastpin.studies.plan import Plan, parse_plan
@@ -152,7 +152,7 @@ def test_runs_that_share_matrices_follow_one_another() -> None:
 def test_what_is_finished_is_skipped(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = contents(copy)
     assert set(before) == set(plan.runs)
-    monkeypatch.setattr(workers, "solve", None)  # not needed
+    monkeypatch.setattr(run_kinds, "solve", None)  # not needed
     summary = sweep.run(plan, copy, Inline())
     assert (summary.done, len(summary.failed), summary.ended) == (4, 2, 0)
     assert contents(copy) == before
@@ -311,13 +311,13 @@ def test_any_executor_gives_the_same(executor, plan, swept, tmp_path):
 
 
 def test_a_run_makes_its_products_in_one_thread(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    solve, seen = workers.solve, []
+    solve, seen = run_kinds.solve, []
 
     def watched(*arguments: Any, **options: Any) -> Any:
         seen.append(works_alone())
         return solve(*arguments, **options)
 
-    monkeypatch.setattr(workers, "solve", watched)
+    monkeypatch.setattr(run_kinds, "solve", watched)
     sweep.run(plan, tmp_path, Inline())
     assert seen == [True] * 6
     assert not works_alone()
@@ -325,14 +325,14 @@ def test_a_run_makes_its_products_in_one_thread(plan: Plan, tmp_path: Path, monk
 
 def test_whatever_goes_wrong_in_a_run_is_its_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     errors = iter([MemoryError(), ZeroDivisionError("by nothing")])
-    solve = workers.solve
+    solve = run_kinds.solve
 
     def failing(*arguments: Any, **options: Any) -> Any:
         for error in errors:
             raise error
         return solve(*arguments, **options)
 
-    monkeypatch.setattr(workers, "solve", failing)
+    monkeypatch.setattr(run_kinds, "solve", failing)
     summary = sweep.run(parse_plan(FRICTION.replace("COUNT", "3")), tmp_path, Inline())
     assert [reason for _, reason in summary.failed] == ["not enough memory", "ZeroDivisionError: by nothing"]
     assert summary.done == 1
@@ -350,7 +350,7 @@ def test_a_full_disk_is_a_failure_without_figures(plan: Plan, tmp_path: Path, mo
 
 def test_a_worker_of_another_version_is_refused(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     of_sweep = workers.Setting
-    monkeypatch.setattr(workers, "Setting", lambda process, _, most: of_sweep(process, "0.0", most))
+    monkeypatch.setattr(workers, "Setting", lambda process, _, *more: of_sweep(process, "0.0", *more))
     summary = sweep.run(plan, tmp_path, Inline())
     assert summary.failed[0][1] == f"the worker has fastpin {fastpin.__version__}, the sweep 0.0"
 

@@ -9,7 +9,7 @@ import pytest
 
 from fastpin import InputError, __version__
 from fastpin.storage import store
-from fastpin.studies import parse_plan, read_outcomes, read_plan, sweep, workers
+from fastpin.studies import parse_plan, read_outcomes, read_plan, run_kinds, sweep, workers
 from fastpin.studies.index import Index
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan
@@ -69,7 +69,7 @@ def test_outcomes_that_are_added_later_are_read_and_nothing_is_solved(bare, copy
     sweep.run(plan, tmp_path / "at once", Inline())
     started = [row["started"] for row in sweep.load(copy)]
     assert chosen(plan, copy) == [dict.fromkeys(plan.outcomes)] * 2
-    monkeypatch.setattr(workers, "solve", None)
+    monkeypatch.setattr(run_kinds, "solve", None)
     calls: list[tuple[int, int]] = []
     summary = sweep.run(plan, copy, Inline(), progress=lambda *now: calls.append(now))
     assert (summary.ended, summary.read, summary.unread) == (0, 2, [])
@@ -157,7 +157,7 @@ def test_outcomes_are_read_from_files_too(tmp_path: Path) -> None:
 
 def test_a_worker_of_another_version_reads_nothing(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     of_sweep = workers.Setting
-    monkeypatch.setattr(workers, "Setting", lambda process, _, most: of_sweep(process, "0.0", most))
+    monkeypatch.setattr(workers, "Setting", lambda process, _, *more: of_sweep(process, "0.0", *more))
     summary = sweep.run(parse_plan(CYCLES + TABLE), copy, Inline())
     assert {reason for _, _, reason in summary.unread} == {f"the worker has fastpin {__version__}, the sweep 0.0"}
 
