@@ -168,9 +168,15 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
         f"friction {surface}": [float(np.hypot(*state.faying[k].force)) for state in states]
         for k, surface in enumerate(joint.faying)
     }
-    factor, unit = joint_units(joint)["force"].scale([max(map(abs, values)) for values in forces.values()])
+    largest = max(max(map(abs, values)) for values in forces.values())
+    curves: dict[str, list[float]] = {}
+    for name, values in forces.items():  # Curves less than the width of a line apart are one, with several names.
+        same = [names for names, known in curves.items() if np.ptp([known, values], axis=0).max() <= 3e-3 * largest]
+        known = curves.pop(same[0]) if same else values
+        curves[", ".join([*same[:1], name])] = known
+    factor, unit = joint_units(joint)["force"].scale([largest])
     few = len(points) <= 60
-    for k, (_, values) in enumerate(forces.items()):
+    for k, values in enumerate(curves.values()):
         style = line(k % MAX_NAMED, k // MAX_NAMED)
         panel.plot(points, factor * np.array(values), marker="o" if few else "", markersize=3.5, **style)
     draw_grid(panel)
@@ -180,7 +186,7 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
         panel.set_ylim(bottom=0.0)
     if few and len(points) < 12:
         panel.set_xticks(points)
-    handles = [Line2D([], [], label=name, **line(k % MAX_NAMED, k // MAX_NAMED)) for k, name in enumerate(forces)]
+    handles = [Line2D([], [], label=name, **line(k % MAX_NAMED, k // MAX_NAMED)) for k, name in enumerate(curves)]
     sheet.legend(handles, min(len(handles), 5))
     sheet.head(look.title)
     return sheet

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from fastpin.joints.parts import Clamp, Joint, JointPin, JointPlate
+from fastpin.joints.parts import BEAM, Clamp, Joint, JointPin, JointPlate
 from fastpin.lugs.outline import Hole, Part, PartLoad
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import law_entries, law_from
@@ -55,6 +55,7 @@ def joint_from(document: Mapping[str, Any]) -> Joint:
                 **each,
                 "material": _material(each["material"]),
                 "clamp": None if each["clamp"] is None else Clamp(**each["clamp"]),
+                "heads": each["heads"] if each["flexibility"] == BEAM else None,  # older files have 0 there
             },
         )
         for each in document["pins"]

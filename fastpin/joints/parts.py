@@ -228,9 +228,9 @@ class JointPin:
         slices of its plates, which lie on one another in their order.
     clamp : Clamp, optional
         The clamp-up of its plates.
-    heads : {"free", "held"} or float
-        Of a beam: its ends turn freely, or do not turn, or by the angle of a moment: N m/rad. It is kept as a number,
-        0 or infinite.
+    heads : {"free", "held"} or float, optional
+        Of a beam: its ends turn freely, as they do unless it is given; or do not turn, or by the angle of a moment:
+        N m/rad. It is kept as a number, 0 or infinite.
 
     Raises
     ------
@@ -247,7 +247,7 @@ class JointPin:
     friction: float | Mapping[str, float] = 0.0
     flexibility: float | Literal["beam"] = 0.0
     clamp: Clamp | None = None
-    heads: Any = 0.0
+    heads: Any = None
 
     def __post_init__(self) -> None:
         checks.check_fields(self, _name, "name")
@@ -264,8 +264,9 @@ class JointPin:
             checks.check_fields(self, checks.choice, "flexibility", (BEAM,))
         else:
             checks.check_fields(self, checks.not_negative, "flexibility")
-        checks.check_fields(self, _heads, "heads")
-        if self.heads and self.flexibility != BEAM:
+        if self.heads is not None:
+            checks.check_fields(self, _heads, "heads")
+        if self.heads is not None and self.flexibility != BEAM:
             raise InputError("heads", f'needs a pin that bends, flexibility = "{BEAM}"')
         if self.clamp is not None:
             checks.instance("clamp", self.clamp, Clamp, "a Clamp")
@@ -433,7 +434,7 @@ class Joint:
         of = [next(plate for plate in self.plates if plate.name == name) for name in pin.plates]
         if isinstance(pin.flexibility, str):
             edges = list(itertools.accumulate((one.thickness for plate in of for one in plate.across), initial=0.0))
-            return beam(pin.material, pin.radius, edges, of[0].slices, pin.heads)
+            return beam(pin.material, pin.radius, edges, of[0].slices, pin.heads or 0.0)
         soft = [0.0 if number else pin.flexibility for plate in of for number in range(plate.slices)]
         return springs(soft[1:])
 

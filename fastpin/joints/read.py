@@ -261,16 +261,13 @@ def _pins(source: CaseText, block: Section, plates: list[JointPlate | None]) -> 
     flexibility = _flexibility(block, material, diameter, through, plates)
     if flexibility is None:
         return [None]
-    if "heads" in block and flexibility != "beam":
-        block.report('heads: needs a pin that bends, flexibility = "beam"', "heads")
-        return [None]
     clamp = block.checked("clamp", _clamp)
     if clamp is None and "clamp" in block:
         return [None]
     common = {"material": material, "radius": 0.5 * diameter, "plates": through, "flexibility": flexibility}
     common["clamp"] = clamp
-    for key in ("clearance", "friction", "heads"):
-        common[key] = block.value(key) if key in block else 0.0
+    for key in (key for key in ("clearance", "friction", "heads") if key in block):
+        common[key] = block.value(key)
     return [_made(block, JointPin, name=name, at=at, **common) for name, at in zip(names, places, strict=True)]
 
 

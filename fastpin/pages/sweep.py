@@ -131,9 +131,11 @@ def write_sweep_report(
         words = "The sweep was last run with another plan than this one; runs that it lacks are waiting."
         sections[0] = PageSection("overview", "Overview", [*sections[0].parts, Text(words, "note")])
     kind = "parameter sweep" if study is None else "tolerance study"
-    lead = f"A {kind} of the frictional contact of an elastic pin in the hole of an elastic plate."
+    is_joint = found.base.form == "joint file"
+    of = "a joint of several pins and plates" if is_joint else "an elastic pin in the hole of an elastic plate"
+    lead = f"A {kind} of the frictional contact of {of}."
     made = f"Made by fastpin {__version__} on {now()} from {folder.resolve().name}/{INDEX}."
-    named = merged(found.case(found.points[0]).about, about)
+    named = merged(About() if is_joint else found.case(found.points[0]).about, about)
     write_page(Page(found.title or "Report of a sweep", lead, sections, made, named), target)
 
 
@@ -200,9 +202,15 @@ def _plan(page: Parts) -> PageSection:
 def _first_case(page: Parts) -> PageSection:
     point = page.plan.points[0]
     case = page.plan.case(point)
+    words = f"The first run, {point.id}: {describe_values(point.values)}."
+    if page.plan.base.form == "joint file":
+        names, points = [name for name in case.joint.load_names if any(name in at for at in case.corners)], case.corners
+        loads = [(name, "", ["" if name not in at else brief(at[name]) for at in points]) for name in names]
+        numbers = ("load point", "", [str(place) for place in range(1, len(points) + 1)])
+        caption = "Loads, N and Pa; one without a number keeps its value"
+        return PageSection("case", "The first joint", [Text(words), Table(caption, [numbers, *loads])])
     columns, hidden = corner_columns(case.problem, case.history)
     note = f" ({hidden:,} corners not shown here)" if hidden else ""
-    words = f"The first run, {point.id}: {describe_values(point.values)}."
     facts = Facts("The problem", case_rows(case), ("subject", "in words"))
     table = Table(f"Corners of the load history{note}", columns)
     return PageSection("case", "The first case", [Text(words), facts, table])

@@ -233,7 +233,7 @@ def _not_readable(path: Path, start: bytes) -> InputError:
     if start == HDF5_SIGNATURE:
         return InputError(str(path), "is damaged or cut short")
     if path.suffix == ".toml":
-        return InputError(str(path), f"is no result; of a case file, fastpin run {path} -o FILE makes one")
+        return InputError(str(path), f"is no result; fastpin run, or joint, {path} -o FILE makes one")
     return InputError(str(path), "is no HDF5 file, and no result")
 
 

@@ -227,11 +227,11 @@ def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> N
         ("run case.toml --cycle-csv c.csv", "--cycle-csv: the history has no cycles"),
         ("run case.toml --keep cycles", "--keep: the history has no cycles"),
         ("run case.toml -o case.toml", "by its name it is a case file or plan"),
-        ("run case.toml --start case.toml", "is no result; of a case file, fastpin run"),
+        ("run case.toml --start case.toml", "is no result; fastpin run, or joint, case.toml -o FILE makes one"),
         ("run case.toml --start none.h5", "there is no such file"),
         ("resume none.h5", "there is no such file"),
-        ("resume case.toml", "is no result; of a case file, fastpin run"),
-        ("show case.toml", "is no result; of a case file, fastpin run"),
+        ("resume case.toml", "is no result; fastpin run, or joint, case.toml -o FILE makes one"),
+        ("show case.toml", "is no result; fastpin run, or joint, case.toml -o FILE makes one"),
     ],
 )
 @pytest.mark.usefixtures("case")

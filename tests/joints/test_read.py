@@ -213,3 +213,16 @@ def test_the_command_refuses_a_case_file(tmp_path: Path, capsys: pytest.CaptureF
     (tmp_path / "case.toml").write_text(casefile.EXAMPLE)
     assert main(["joint", str(tmp_path / "case.toml")]) == 2
     assert "is a case file, not a joint file; see fastpin run" in capsys.readouterr().err
+
+
+def test_curves_that_hide_one_another_are_one_with_both_names() -> None:
+    case = parse_joint(SHEETS.replace('"B.x" = 2e3', '"B.x" = 4e3').replace('"A.x" = 1e3', '"A.x" = 1e3\n"B.x" = 1e3'))
+    panel = figures.plot_shares(solve_joint(case.joint, case.corners, nodes=16)).axes[0]
+    assert [text.get_text() for text in panel.figure.legends[0].get_texts()] == ["A, B"]
+    assert len(panel.lines) == 1
+
+
+def test_a_fault_of_a_plate_stands_on_the_line_of_the_plate() -> None:
+    more = '[[plate]]\nname = "cover"\nmaterial = "aluminium"\nthickness = 1e-3\n\n[[pin]]'
+    ((line, message),) = faults_of(parse_joint, SHEETS.replace("[[pin]]", more))
+    assert (line, message.partition(":")[0]) == (12, "plate.cover.moves")

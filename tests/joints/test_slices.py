@@ -178,7 +178,7 @@ def test_the_map_draws_one_slice_and_says_so(short: JointResult) -> None:
 
 def test_a_file_gives_slices_and_heads() -> None:
     text = SHEETS.replace("thickness = 2e-3", "thickness = 2e-3\nslices = 4")
-    for words, value in (('heads = "held"', math.inf), ("heads = 2e3", 2e3), ("", 0.0)):
+    for words, value in (('heads = "held"', math.inf), ("heads = 2e3", 2e3), ("", None)):
         joint = parse_joint(text.replace("friction = 0.2", f'flexibility = "beam"\n{words}')).joint
         assert (joint.pins[0].flexibility, joint.pins[0].heads, joint.plates[0].slices) == ("beam", value, 4)
     in_mm = 'units = "mm, N, MPa"\n' + text.replace("friction = 0.2", 'flexibility = "beam"\nheads = 2e3')
@@ -193,6 +193,7 @@ def test_a_file_gives_slices_and_heads() -> None:
         ({"heads": -1.0}, 'heads: must not be negative, not -1; or "free" or "held"'),
         ({"flexibility": "soft"}, 'flexibility: must be "beam", not "soft"'),
         ({"flexibility": 0.0, "heads": "held"}, 'heads: needs a pin that bends, flexibility = "beam"'),
+        ({"flexibility": 0.0, "heads": "free"}, 'heads: needs a pin that bends, flexibility = "beam"'),
         ({"clamp": Clamp(1e3, 0.2)}, "pin.pin.clamp: pin pin can't clamp near, which has slices"),
     ],
 )

@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 46,
     "constants of modules": 1_243,
     "hidden imports": 0,
-    "lines of code": 51_728,
+    "lines of code": 51_741,
     "lines of code of the core": 18_446,
     "files of the core": 134,
     "functions of the core": 1_973,

@@ -11,6 +11,7 @@ import pytest
 
 import fastpin
 from fastpin.joints import BaseJoint, JointFile, parse_joint, solve_joint
+from fastpin.pages import write_sweep_report
 from fastpin.report import sweep as report
 from fastpin.storage import load_joint
 from fastpin.studies import parse_plan, parse_tolerances, sweep
@@ -238,3 +239,14 @@ def test_limits_need_one_nominal_value(tmp_path: Path) -> None:
     (_, first), (_, second) = faults_of(parse_tolerances, text, folder=tmp_path)
     assert first.startswith("pin.A.clearance: the case has no number for it")
     assert second.startswith("loads.B.y: the case has no such load")
+
+
+@pytest.mark.gate
+def test_the_page_of_a_sweep_of_a_joint(tmp_path: Path) -> None:
+    plan = plan_of(PLAN, tmp_path)
+    sweep.run(plan, tmp_path / "out", Inline())
+    write_sweep_report(tmp_path / "out", tmp_path / "page.html")
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "a joint of several pins and plates" in page
+    assert "clearance of B" in page
+    assert "bypass" in page
