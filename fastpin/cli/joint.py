@@ -60,14 +60,14 @@ def run(options: argparse.Namespace) -> int:
     return _write(case, result, options) or code
 
 
-def show(options: argparse.Namespace) -> int:
+def show(stored: storage.stored.StoredResult, options: argparse.Namespace) -> int:
     """Print and draw the stored result of a joint."""
     for name in ("states", "cycles", "cycle_csv", "record"):
         if getattr(options, name) is not None:
             raise InputError(terminal.flag(name), "is for the result of one pin, not of a joint")
     if options.interface != "pin":
         raise InputError("--interface", "is for a bush that slips in its seat, not for a joint of several pins")
-    case, result = storage.stored_joint(options.output), storage.load_joint(options.output)
+    case, result = storage.joint_files.case_of(stored), storage.joint_files.joint_of(stored)
     _check(options, max(len(result), 1), {})
     if not len(result):
         terminal.say("no state was reached")

@@ -90,7 +90,7 @@ def show(options: argparse.Namespace) -> int:
     """Print and draw a stored result of one pin or of a joint, or print a stored life of wear."""
     with storage.stored.StoredResult(options.output) as stored:
         if stored.is_joint:
-            return joint.show(options)
+            return joint.show(stored, options)
         terminal.check_outputs({"--shares": options.shares}, ("--shares",))
         for name in ("at", "shares"):
             if getattr(options, name) is not None:

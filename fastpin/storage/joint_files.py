@@ -46,7 +46,7 @@ from fastpin.storage import files, hdf5, layout, packed
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.hdf5 import as_python, dataset_of, text_of
 from fastpin.storage.restarts import ARRAYS, read_array
-from fastpin.storage.store import open_result
+from fastpin.storage.stored import StoredResult
 from fastpin.storage.stored_joints import (
     RESIDUALS,
     StoredJointStates,
@@ -186,17 +186,18 @@ def load_joint(path: str | Path) -> JointResult:
     InputError
         If the file can't be read, or holds no result of a joint. The states raise it too.
     """
-    path = file_path("path", path)
-    with open_result(path, form=layout.JOINT) as file:
+    return joint_of(StoredResult(path))
+
+
+def joint_of(stored: StoredResult) -> JointResult:
+    """Read the result of a joint, see :func:`load_joint`."""
+    with stored.opened(form=layout.JOINT) as file:
         task, statistics = read_task(file), hdf5.numbers_of(file["solver/statistics"])
-        orders = {
-            whole_name(plate.name): read_hole(file, task.joint, place).order
-            for place, (_, plate) in enumerate(task.joint.sections)
-        }
-    return JointResult(
-        task.joint, StoredJointStates(path, task), task.nodes, tuple(orders[plate.name] for plate in task.joint.plates),
-        int(statistics.get("snaps", 0)), statistics.get("seconds", 0.0),
-    )  # fmt: skip
+        pairs, joint = enumerate(task.joint.sections), task.joint
+        orders = {whole_name(plate.name): read_hole(file, joint, place).order for place, (_, plate) in pairs}
+    of_plates = tuple(orders[plate.name] for plate in joint.plates)
+    snaps, seconds = int(statistics.get("snaps", 0)), statistics.get("seconds", 0.0)
+    return JointResult(joint, StoredJointStates(stored, task), task.nodes, of_plates, snaps, seconds)
 
 
 def stored_joint(path: str | Path) -> JointFile:
@@ -207,7 +208,12 @@ def stored_joint(path: str | Path) -> JointFile:
     InputError
         See :func:`load_joint`.
     """
-    with open_result(file_path("path", path), form=layout.JOINT) as file:
+    return case_of(StoredResult(path))
+
+
+def case_of(stored: StoredResult) -> JointFile:
+    """Read what is followed, see :func:`stored_joint`."""
+    with stored.opened(form=layout.JOINT) as file:
         return _case_of(file, read_task(file))
 
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
@@ -24,7 +23,7 @@ from fastpin.states.reading_bounds import StateBlock
 from fastpin.states.state import State
 from fastpin.storage import hdf5, layout
 from fastpin.storage.hdf5 import as_python, check_finite, dataset_of
-from fastpin.storage.store import open_result
+from fastpin.storage.stored import StoredResult
 from fastpin.storage.stored_states import StoredStates
 
 RESIDUALS = (*layout.RESIDUALS, "bodies")
@@ -111,41 +110,41 @@ def _residuals(rows: layout.Rows, k: int) -> dict[str, float]:
 
 
 class StoredSection(KeptStates):
-    """The contact of a pin in a plate at all states of a file, which is opened for each reading.
+    """The contact of a pin in a plate at all states of a file.
 
     Parameters
     ----------
-    path : Path
+    stored : StoredResult
     task : JointTask
     place : int
         Among the sections.
     """
 
-    def __init__(self, path: Path, task: JointTask, place: int) -> None:
-        self._path, self._task, self._place = path, task, place
-        with self._opened() as (file, stored):
+    def __init__(self, stored: StoredResult, task: JointTask, place: int) -> None:
+        self._stored, self._task, self._place = stored, task, place
+        with self._opened() as (file, states):
             self._hole = read_hole(file, task.joint, place)
-            self.points, self.grid = stored.points, stored.grid
-            self.problem = replace(stored.problem, plate_body=self._hole)
+            self.points, self.grid = states.points, states.grid
+            self.problem = replace(states.problem, plate_body=self._hole)
 
     @contextmanager
     def _opened(self) -> Iterator[tuple[hdf5.Group, StoredStates]]:
         task = self._task
-        with open_result(self._path, form=layout.JOINT) as file:
+        with self._stored.opened(form=layout.JOINT) as file:
             group, problem = file["interfaces"][str(self._place)], task.joint.problem(*task.joint.sections[self._place])
             yield file, StoredStates(group, problem, all_round(task.nodes), len(task.values))
 
     def blocks(self) -> Iterator[StateBlock]:
         """Give the nodal values of all states, in order."""
-        with self._opened() as (_, stored):
-            yield from stored.blocks()
+        with self._opened() as (_, states):
+            yield from states.blocks()
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Read the states at these places."""
-        with self._opened() as (file, stored):
-            return self.contacts(file, stored, places)
+        with self._opened() as (file, states):
+            return self.contacts(file, states, places)
 
-    def contacts(self, file: hdf5.Group, stored: StoredStates, places: Sequence[int]) -> list[State]:
+    def contacts(self, file: hdf5.Group, states: StoredStates, places: Sequence[int]) -> list[State]:
         """The states of an open file at these places, with what acts on their hole."""
         size = len(self._hole.matrix)
 
@@ -161,7 +160,7 @@ class StoredSection(KeptStates):
         acting = rows_of(self._place, "incoming", "rubbed", "acting")
         edges = [rows_of(other, "edge")["edge"] for other in holes_beside(self._task.joint, self._place)]
         whole, found = read_whole(file, self._task, places), []
-        for k, state in enumerate(stored.read(places)):
+        for k, state in enumerate(states.read(places)):
             others = np.array([edge[k] for edge in edges]).reshape(-1, size)
             hole = self._hole.under(
                 incoming=acting["incoming"][k], others=others, loads=acting["acting"][k], rubbed=acting["rubbed"][k]
@@ -172,18 +171,18 @@ class StoredSection(KeptStates):
 
 
 class StoredJointStates(JointStates):
-    """The states of a joint in a file, which is opened for each reading.
+    """The states of a joint in a file.
 
     Parameters
     ----------
-    path : Path
+    stored : StoredResult
     task : JointTask
     """
 
-    def __init__(self, path: Path, task: JointTask) -> None:
-        self._path, self._task = path, task
+    def __init__(self, stored: StoredResult, task: JointTask) -> None:
+        self._stored, self._task = stored, task
         self._sections: dict[int, StoredSection] = {}
-        with open_result(path, form=layout.JOINT) as file:
+        with stored.opened(form=layout.JOINT) as file:
             self._rows = read_whole(file, task, slice(None))
 
     def __len__(self) -> int:
@@ -212,5 +211,5 @@ class StoredJointStates(JointStates):
     def section(self, place: int) -> StoredSection:
         """The contact of a pin in a plate at all states."""
         if place not in self._sections:
-            self._sections[place] = StoredSection(self._path, self._task, place)
+            self._sections[place] = StoredSection(self._stored, self._task, place)
         return self._sections[place]

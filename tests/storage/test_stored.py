@@ -9,6 +9,7 @@ import pytest
 
 from fastpin import MATERIALS, MaterialPair, Problem, storage
 from fastpin.cli.main import main
+from fastpin.joints import JOINT_EXAMPLE
 from fastpin.solver.solving import solve
 from fastpin.storage import journal
 from fastpin.storage.store import save
@@ -91,3 +92,13 @@ def test_the_functions_of_a_path_read_the_same(path):
     assert storage.load_points(path).tolist() == stored.points.tolist() == [1.0, 2.0, 3.0]
     assert storage.places_between(path, 1, 2) == slice(0, 2)
     assert storage.marked_extremes(path) == stored.extremes
+
+
+@pytest.mark.gate
+def test_the_result_of_a_joint_is_opened_once(tmp_path, opened):
+    joint, path = tmp_path / "joint.toml", tmp_path / "joint.h5"
+    joint.write_text(JOINT_EXAMPLE, encoding="utf-8")
+    assert main(["joint", str(joint), "-o", str(path), "--nodes", "41"]) == 0
+    opened.clear()
+    assert main(["show", str(path), "--json", str(tmp_path / "joint.json")]) == 0
+    assert len(opened) == 1
