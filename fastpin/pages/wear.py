@@ -81,7 +81,7 @@ def numbers(page: PageParts) -> PageSection:
         return PageSection("wear", "Wear", [*parts, Text(NO_PROFILE, "missing")])
     lines = cycle_lines(life)
     columns, gaps = columns_at(cycle_columns(life), printed_rows(lines)), TableRows(lines, life.numbers).gaps
-    parts += [page.album.figure(wear_plot(Subject(life))), Table("StoredResult cycles", columns, gaps)]
+    parts += [page.album.figure(wear_plot(Subject(life))), Table("Stored cycles", columns, gaps)]
     remarks = "Energy and pressure of a row are those over one cycle on its profile, without further wear. "
     remarks += "The last column counts the cycles that were really solved, those for the control of the error included."
     if gaps:
