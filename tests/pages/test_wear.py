@@ -90,7 +90,8 @@ def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult) -> None:
     last, found = life[-1], life.fatigue()
     assert "summed up from" not in page.text
     for part in (
-        "Worn lug", "Stored cycles", "Complete: 60 cycles.", f"{last.solved} cycles were really solved", "Debris is not modelled.",
+        "Worn lug", "Complete: 60 cycles.", "Stored cycles",
+        f"{last.solved} cycles were really solved", "Debris is not modelled.",
         "wear coefficient of the plate", "8e-12 1/Pa", "0.01 of the largest depth", f"{1e9 * last.depth:.4g} nm deep",
         "20 % of the volume from the pin", f"{1e-6 * life[2].largest_pressure:.5g}",
         f"{1e12 * last.volumes[1]:.4g} um^2",
