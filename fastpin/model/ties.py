@@ -19,8 +19,7 @@ TIE = 1e-9
 
 def top(values: Sequence[float] | np.ndarray) -> int:
     """The place of the largest of `values`, in time: of equal ones the first."""
-    found = np.ravel(values)
-    return int(np.argmax(is_top(found)))
+    return int(np.argmax(is_top(np.ravel(values))))
 
 
 def top_angle(values: np.ndarray, theta: np.ndarray) -> int:
@@ -30,7 +29,10 @@ def top_angle(values: np.ndarray, theta: np.ndarray) -> int:
     angle it is the first.
     """
     flat = np.ravel(values)
-    equal = np.flatnonzero(is_top(flat))
+    largest = float(flat.max(initial=-np.inf))
+    (equal,) = (
+        flat >= min((1.0 - TIE) * largest, (1.0 + TIE) * largest)
+    ).nonzero()  # as is_top, at a third of its time
     return int(equal[0] if equal.size == 1 else equal[top_angles(flat[None, equal], np.ravel(theta)[equal])[0]])
 
 

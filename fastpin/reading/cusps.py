@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +20,8 @@ import numpy as np
 from fastpin.model.grid import Grid
 from fastpin.reading.exponents import Coupling, reserve_beside, stick_exponents
 from fastpin.reading.half_line import End, Fit, HalfLine, Tries, Try, half_line
-from fastpin.reading.old_borders import OldBorder, old_borders
+from fastpin.reading.marks import Marks
+from fastpin.reading.old_borders import OldBorder
 from fastpin.reading.zones import CUSP_TERMS, Interval, end_place, interval_of, runs, unrolled, whole_turn
 
 DEGREES = (3, 4, 5)
@@ -149,8 +150,8 @@ class ShearNodes:
     grid : Grid
     pressure, shear : ndarray, shape (n,)
     sticking : ndarray of bool, shape (n,)
-    marks, places : ndarray, shape (n,)
-        Old borders, see :mod:`fastpin.reading.old_borders`.
+    marks : Marks
+        Old borders.
     friction : ndarray, shape (n,)
         mu.
     coupling : Coupling
@@ -160,10 +161,13 @@ class ShearNodes:
     pressure: np.ndarray
     shear: np.ndarray
     sticking: np.ndarray
-    marks: np.ndarray
-    places: np.ndarray
+    marks: Marks
     friction: np.ndarray
     coupling: Coupling
+    # Places of borders that were read, by the outermost node and the direction inwards; their half lines and parts in
+    # the fitted quantity, by the node, the border's own sign, the direction and the sign of :meth:`_end`.
+    _border_places: dict[tuple[int, int], float] = field(default_factory=dict)
+    _solutions: dict[tuple[int, int, int, int], tuple[HalfLine, tuple[float, float]]] = field(default_factory=dict)
 
     @cached_property
     def _patches(self) -> list[_Patch]:
@@ -241,11 +245,6 @@ class ShearNodes:
                 if cusp is not None:
                     yield cusp
 
-    @cached_property
-    def _border_places(self) -> dict[tuple[int, int], float]:
-        """The places of borders that were read, by the outermost node and the direction inwards."""
-        return {}
-
     def _border_place(self, run: np.ndarray, inwards: int) -> float:
         """Place of the border at an end of the stick zone of the nodes `run`; NaN if no fit is good enough."""
         nodes = run[::inwards]
@@ -269,7 +268,7 @@ class ShearNodes:
         place = self._border_place(nodes[::-outwards], -outwards)
         if not abs(-outwards * place - offset) <= 0.01:  # else the two readings of the border do not agree
             return None
-        offsets = offset + outwards * self._beyond
+        offsets = offset + outwards * _beyond(self.coupling.is_smooth)
         read = self._pressure_at(node, offsets, -outwards)
         if read is None:
             return None
@@ -277,14 +276,6 @@ class ShearNodes:
         angle += self._angle(node, float(offsets[top])) - self._angle(node, offset)
         friction = float(self.friction[node])
         return Cusp(friction * float(read[0][top]), friction * read[1], angle, node)
-
-    @cached_property
-    def _beyond(self) -> np.ndarray:
-        """Distances from a border, outwards, at which the largest shear may lie, in node distances.
-
-        Of unlike bodies it lies a little beyond the border. The places gather at the border.
-        """
-        return np.zeros(1) if self.coupling.is_smooth else 6.0 * np.linspace(0.0, 1.0, 81) ** 2
 
     @cached_property
     def _coupled_borders(self) -> list[tuple[int, OldBorder]]:
@@ -302,13 +293,7 @@ class ShearNodes:
 
     def old_borders(self, run: np.ndarray) -> list[OldBorder]:
         """The marked borders in the stick zone of the nodes `run`."""
-        first, n, size = int(run[0]), self.grid.size, run.size
-        return sorted(OldBorder(at, *border[1:]) for border in self._marked if (at := (border.at - first) % n) < size)
-
-    @cached_property
-    def _marked(self) -> list[OldBorder]:
-        """All marked borders, with their nodes in the grid."""
-        return old_borders(self.marks, self.places)
+        return self.marks.borders(int(run[0]), run.size, self.grid.size)
 
     def _end_sign(self, run: np.ndarray, inwards: int) -> int:
         """Sign of the shear in the slip zone at an end of a stick zone; 0 if the contact ends there."""
@@ -357,7 +342,7 @@ class ShearNodes:
 
     def _read(self, fit: Fit, error: float, window: _Window, node: int, border: OldBorder, highest: int) -> Cusp | None:
         """Read the cusp at an old border, whose outermost node is `node`, from the best fit beside it."""
-        places = fit.place(0) - border.inwards * (self._beyond if border.sign else np.zeros(1))
+        places = fit.place(0) - border.inwards * _beyond(not border.sign or self.coupling.is_smooth)
         offsets = places + window.first - border.at
         values = fit.values(places)
         if window.sign:
@@ -406,14 +391,6 @@ class ShearNodes:
         line, parts = self._solutions[key]
         return End(line, border.at - first, inwards, terms, border.place, parts)
 
-    @cached_property
-    def _solutions(self) -> dict[tuple[int, int, int, int], tuple[HalfLine, tuple[float, float]]]:
-        """The half line and the parts in the fitted quantity of borders that were read.
-
-        The key has the outermost node, the border's own sign, its direction inwards and the sign of :meth:`_end`.
-        """
-        return {}
-
     def _pressure_at(self, node: int, offsets: np.ndarray, inwards: int) -> tuple[np.ndarray, float] | None:
         """The pressure beside a border, and its standard error at the first place.
 
@@ -460,6 +437,16 @@ class ShearNodes:
         return float(self.grid.theta[node]) + offset * float(self.grid.halves[offset > 0.0][node])
 
 
+@cache
+def _beyond(is_smooth: bool) -> np.ndarray:
+    """Distances from a border, outwards, at which the largest shear may lie, in node distances.
+
+    Of unlike bodies it lies a little beyond the border. The places gather at the border.
+    """
+    return np.zeros(1) if is_smooth else 6.0 * np.linspace(0.0, 1.0, 81) ** 2
+
+
+@cache
 def _spans(at: int, size: int) -> list[tuple[int, int]]:
     """The windows to try about the node number `at` of a zone of `size` nodes: first node, and node after the last."""
     return list(dict.fromkeys((max(at - half, 0), min(at + half + 1, size)) for half in (5, 7, 10, 14, 20)))

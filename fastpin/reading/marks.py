@@ -19,7 +19,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import half_line
-from fastpin.reading.old_borders import BITS, UPWARD, OldBorder, is_ambiguous, present_borders, truly_sticking
+from fastpin.reading.old_borders import BITS, UPWARD, OldBorder, is_ambiguous, present_borders, signs_of, truly_sticking
 from fastpin.reading.zones import MOST_VALUES, end_place
 
 
@@ -152,27 +152,23 @@ class Marks:
         nodes = nodes % n if grid.closed else nodes[(nodes >= 0) & (nodes < n)]
         slipping = np.flatnonzero(~sticking[nodes])
         zone = nodes[: slipping[0]] if slipping.size else nodes
-        cusps = self.near(zone[: MOST_VALUES // 2].tolist(), inwards)
+        cusps = self.borders(node, min(zone.size, MOST_VALUES // 2), n, inwards)
         coupling = Coupling.of(problem, friction[[node]], grid.theta[[node]])
         line = half_line(0.5 - float(coupling.tilt[int(sign), 0]) * sign * inwards, float(coupling.beta[0]))
         return end_place(bound[zone] - sign * shear[zone], line, cusps)
 
-    def near(self, nodes: list[int], inwards: int) -> list[OldBorder]:
-        """The marked borders at some neighbouring `nodes`, which lie `inwards` from the first one, in their order.
+    def borders(self, first: int, size: int, n: int, inwards: int = 1) -> list[OldBorder]:
+        """The marked borders at `size` neighbours of `n` nodes, from the node `first` in the direction `inwards`.
 
-        Their nodes and directions count from there too.
+        Their nodes and directions count from there too. They are in increasing order.
         """
         found = []
-        for at, node in enumerate(nodes):
-            bits = self._bits.get(node)
-            if bits is None:
-                continue
-            place, directions = _known(self._places.get(node, math.nan)), set()
-            for (direction, sign), bit in BITS.items():
-                if bits & bit and direction not in directions:
-                    directions.add(direction)
-                    found.append(OldBorder(at, direction * inwards, sign, place))
-        return found
+        for node, mark in self._bits.items():
+            at = inwards * (node - first) % n
+            if at < size:
+                place, signs = _known(self._places.get(node, math.nan)), signs_of(mark)
+                found += [OldBorder(at, direction * inwards, sign, place) for direction, sign in signs.items()]
+        return sorted(found)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copies and pickles hold the places as numbers."""

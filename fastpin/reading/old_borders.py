@@ -11,7 +11,7 @@ not be told from them.
 
 from __future__ import annotations
 
-import math
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -55,15 +55,10 @@ class OldBorder(NamedTuple):
         return self.at == (0 if self.inwards > 0 else nodes - 1)
 
 
-def old_borders(marks: np.ndarray, places: np.ndarray) -> list[OldBorder]:
-    """The marked borders of a zone, one for each node and direction, from the marks and places of its nodes."""
-    found: dict[tuple[int, int], OldBorder] = {}
-    for at in map(int, np.flatnonzero(marks)):
-        for (inwards, sign), bit in BITS.items():
-            if marks[at] & bit and (at, inwards) not in found:
-                place = float(places[at])
-                found[at, inwards] = OldBorder(at, inwards, sign, None if math.isnan(place) else place)
-    return list(found.values())
+@functools.cache
+def signs_of(mark: int) -> dict[int, int]:
+    """The direction into each zone that ends at a node with this mark, and the sign of the shear in the slip zone."""
+    return {inwards: sign for (inwards, sign), bit in reversed(BITS.items()) if mark & bit}  # the first of each counts
 
 
 def is_ambiguous(mark: int) -> bool:

@@ -337,9 +337,8 @@ class State(ReadOnly):
     @cached_property
     def nodes(self) -> ShearNodes:
         """The nodal tractions with the marks of old borders."""
-        borders = (self.marks or Marks()).arrays(self.grid.size)
         tractions = self.grid, self.pressure, self.shear, self._sticking
-        return ShearNodes(*tractions, *borders, self.friction, self.coupling)
+        return ShearNodes(*tractions, self.marks or Marks(), self.friction, self.coupling)
 
     @cached_property
     def resultants(self) -> dict[str, float]:

@@ -9,6 +9,7 @@ from fastpin import Grid, Problem, solve
 from fastpin.reading import peaks
 from fastpin.reading.cusps import ShearNodes
 from fastpin.reading.exponents import isotropic_coupling
+from fastpin.reading.marks import Marks
 
 GRID = Grid.arc(-1.0, 1.0, 81)
 X = np.arange(-40.0, 41.0)
@@ -21,9 +22,8 @@ def nodal(values: np.ndarray) -> float:
 
 def contact_of(pressure: np.ndarray, shear: np.ndarray, sticking: np.ndarray, tilt: float = 0.0) -> ShearNodes:
     """A contact with mu = 1, without old borders."""
-    no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
     coupling = isotropic_coupling((ALL * 1.0).tobytes(), math.tan(math.pi * tilt))
-    return ShearNodes(GRID, pressure, shear, sticking, no_marks, no_places, ALL * 1.0, coupling)
+    return ShearNodes(GRID, pressure, shear, sticking, Marks(), ALL * 1.0, coupling)
 
 
 def read(shear: np.ndarray, pressure: np.ndarray, sticking: np.ndarray = ALL, ends=(-1.0, 1.0), tilt=0.0) -> float:

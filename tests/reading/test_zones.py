@@ -12,6 +12,7 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.reading import peaks, zones
 from fastpin.reading.cusps import ShearNodes
 from fastpin.reading.exponents import isotropic_coupling
+from fastpin.reading.marks import Marks
 
 SAMPLED = 0.2
 """Largest error of an edge, in node distances, that is read from samples of a root.
@@ -95,9 +96,8 @@ def test_stick_zones_of_a_contact_all_round():
     status[sticking] = STICK
     none, pressure = np.zeros(100), np.ones(100)
     coupling = isotropic_coupling(none.tobytes(), 0.0)
-    marks = np.zeros(100, dtype=np.int8), np.full(100, np.nan)
     shear = np.where(sticking, 0.0, 1.0)
-    nodes = ShearNodes(grid, pressure, shear, sticking, *marks, np.ones(100), coupling)
+    nodes = ShearNodes(grid, pressure, shear, sticking, Marks(), np.ones(100), coupling)
     whole = contact(grid, pressure)
     stick = nodes.stick_intervals(np.ones(100, dtype=bool), whole)
     assert len(stick) == 1

@@ -11,7 +11,7 @@ import pytest
 from fastpin import Material, MaterialPair, Problem, Result, load, save, solve
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.reading.marks import Marks
-from fastpin.reading.old_borders import BITS, OldBorder, is_ambiguous, old_borders, present_borders
+from fastpin.reading.old_borders import BITS, OldBorder, is_ambiguous, present_borders
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 PROBLEM = Problem.from_load_parameter(LIKE, 2.0, 0.7, "centre", "fixed")
@@ -39,10 +39,14 @@ def test_marks_of_borders_and_edges() -> None:
     slip = np.where(np.arange(8) == 2, 1.0, 0.0)
     assert list(np.flatnonzero(marks.left(status, slip, np.zeros(8)).arrays(8)[0])) == [3, 7]
     assert list(np.flatnonzero(marks.at(np.arange(8) + 4).arrays(12)[0])) == [5, 6, 7, 11]
-    found = old_borders(bits[2:5], places[2:5])
+    found = marks.borders(2, 3, 8)
     assert found == [OldBorder(0, 1, -1), OldBorder(1, -1, 1, 0.2)]
     assert found[0].mirrored(3) == OldBorder(2, -1, -1)
     assert found[0].is_end(3)
+    assert marks.borders(0, 3, 8, inwards=-1) == [OldBorder(1, -1, 0)]
+    assert marks.borders(7, 3, 8) == [OldBorder(0, 1, 0), OldBorder(2, 1, 0)]
+    both = Marks({2: BITS[1, 0] | BITS[1, -1] | BITS[-1, 1]})
+    assert both.borders(2, 1, 8) == [OldBorder(0, -1, 1), OldBorder(0, 1, -1)]
     for copied in (pickle.loads(pickle.dumps(marks)), copy.deepcopy(marks)):
         assert np.array_equal(copied.arrays(8)[1], places, equal_nan=True)
 
@@ -61,13 +65,13 @@ def test_places_do_not_depend_on_the_time_of_reading() -> None:
 
 def test_borders_are_remembered_until_slip_passes_over_them(result: Result) -> None:
     """Decreasing shakes leave nested borders. A larger one erases them all."""
-    borders = [old_borders(state.old_borders, state.old_places) for state in result]
+    borders = [state.marks.borders(0, 161, 161) for state in result]
     counts = [sum(border.sign != 0 and border.place is not None for border in found) for found in borders]
     assert counts == [0, 2, 3, 5]
     first = next(border for border in borders[1] if border.sign != 0 and border.inwards > 0)
     assert first in borders[3]
     wiped = solve(PROBLEM, [{"Q": 0.2}], start=result)[-1]
-    left = old_borders(wiped.old_borders, wiped.old_places)
+    left = wiped.marks.borders(0, 161, 161)
     assert first not in left
     assert sum(border.sign != 0 for border in left) <= 2
 
