@@ -41,4 +41,5 @@ from .storage.wear_files import load_wear as load_wear
 from .storage.wear_files import wear as wear
 from .studies.convergence import converge as converge
 from .studies.identification import identify as identify
+from .studies.workers import solve_many as solve_many
 from .version import __version__ as __version__

@@ -446,7 +446,6 @@ def _beyond(is_smooth: bool) -> np.ndarray:
     return np.zeros(1) if is_smooth else 6.0 * np.linspace(0.0, 1.0, 81) ** 2
 
 
-@cache
 def _spans(at: int, size: int) -> list[tuple[int, int]]:
     """The windows to try about the node number `at` of a zone of `size` nodes: first node, and node after the last."""
     return list(dict.fromkeys((max(at - half, 0), min(at + half + 1, size)) for half in (5, 7, 10, 14, 20)))

@@ -303,7 +303,7 @@ class Fit:
     """
 
     def __init__(self, values: np.ndarray, ends: tuple[End, ...], degree: int = -1) -> None:
-        packed = _packed(values.size, degree, ends)
+        packed = Tries([Try(0, values.size, degree, ends)])
         self._ends, self.last = ends, values.size - 1.0
         self._packed = degree, packed.ends, packed.tables
         unknowns = values.size - Try(0, values.size, degree, ends).spare
@@ -336,9 +336,3 @@ class Fit:
         rows = np.zeros((self._ends[at].terms - 1, self._coefficients.size))
         kernel.series(at, *self._packed, self._matches, rows)
         return np.asarray(rows @ self._coefficients), self._scatter * float(np.linalg.norm(rows[0] @ self._spread))
-
-
-@functools.lru_cache(maxsize=64)
-def _packed(nodes: int, degree: int, ends: tuple[End, ...]) -> Tries:
-    """One fit of so many nodes, which may be fitted to many values."""
-    return Tries([Try(0, nodes, degree, ends)])

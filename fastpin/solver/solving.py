@@ -18,7 +18,7 @@ from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
 from fastpin.kernels.status import STICK
 from fastpin.model.checks import instance
-from fastpin.model.doubts import doubts, doubts_given, pressure_doubts, warn_of
+from fastpin.model.doubts import are_given, doubts, doubts_given, pressure_doubts, warn_of
 from fastpin.model.grid import Grid, halved
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import KeepRule, Method, SolveOptions
@@ -124,7 +124,8 @@ def solve(
     task = Task(problem, as_history(history), options, grid, progress)
     if error_bars:
         check_halves(task, start)
-    warn_of(doubts(problem, task.history, options, grid), 3)  # above are the explanation of keywords and the user
+    if not are_given():  # else they were looked for before
+        warn_of(doubts(problem, task.history, options, grid), 3)  # above are the explanation of keywords and the user
     result = _follow_task(task, start)
     pressed = pressure_doubts(problem, task.history, (state.pressure for state in result.states))
     yielding = yield_doubts_of(problem, task.history, result.states)

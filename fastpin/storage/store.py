@@ -128,8 +128,8 @@ def pack(
     return content if len(content) <= most else None
 
 
-def unpack(content: bytes, path: Path) -> Result:
-    """Return the result of :func:`pack`. `path` names it in errors.
+def unpack(content: bytes, path: Path) -> tuple[Result, dict[str, Any]]:
+    """Return the result and the sections of :func:`pack`. `path` names them in errors.
 
     Raises
     ------
@@ -137,19 +137,7 @@ def unpack(content: bytes, path: Path) -> Result:
         If the bytes are damaged.
     """
     with _opened(content, path) as file:
-        return read_result(file, path, ALL)[0]
-
-
-def unpack_sections(content: bytes, path: Path) -> dict[str, Any]:
-    """Return the sections of :func:`pack`. `path` names it in errors.
-
-    Raises
-    ------
-    InputError
-        If the bytes are damaged.
-    """
-    with _opened(content, path) as file:
-        return layout.read_beside(file)
+        return read_result(file, path, ALL)[0], layout.read_beside(file)
 
 
 @contextmanager

@@ -13,3 +13,4 @@ from .plan import parse_plan as parse_plan
 from .plan import read_plan as read_plan
 from .tolerances import parse_tolerances as parse_tolerances
 from .tolerances import read_tolerances as read_tolerances
+from .workers import solve_many as solve_many

@@ -61,12 +61,13 @@ class OfCases:
     @staticmethod
     def read(path: str, content: bytes | None) -> Result:
         """Read a kept result."""
-        return store.load(path) if content is None else store.unpack(content, Path(path))
+        return store.load(path) if content is None else store.unpack(content, Path(path))[0]
 
     @staticmethod
     def write(path: Path, content: bytes) -> None:
         """Write a packed result to a file."""
-        store.save(store.unpack(content, path), path, restart=False, sections=store.unpack_sections(content, path))
+        result, sections = store.unpack(content, path)
+        store.save(result, path, restart=False, sections=sections)
 
 
 class OfJoints:

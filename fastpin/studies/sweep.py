@@ -11,6 +11,7 @@ Finished runs are skipped. Thus a sweep continues after a stop, a kill or an ext
 from __future__ import annotations
 
 import json
+import math
 import shutil
 import time
 from collections.abc import Iterable, Mapping, Sequence
@@ -155,18 +156,19 @@ def run(
             missing = _missing_outcomes(index, plan, points, results)
             work = Work(plan, index, results, content, executor, workers, files)
             report = progress or (lambda ended, all_runs: None)
-            began = time.perf_counter()
-            count = _Counter(report, len(todo) + len(missing))
+            began, ended = time.perf_counter(), 0
+            report(0, len(todo) + len(missing))
             with closing(work.solve(todo)) as batches:
                 for ends in batches:
                     index.record(ends)
-                    count.add(len(ends))
+                    for _ in ends:
+                        report(ended := ended + 1, len(todo) + len(missing))
             missing = _missing_outcomes(index, plan, points, results)  # Also of runs that were solved again alone.
-            count.total = len(todo) + len(missing)
             with closing(work.read(missing)) as batches:
                 for ends in batches:
                     index.record_outcomes(ends)
-                    count.add(len(ends))
+                    for _ in ends:
+                        report(ended := ended + 1, len(todo) + len(missing))
             if files:
                 _write_files(RUNS[plan.base.form], index, points, results)
             summary = _summary(index, plan, points, results)
@@ -273,7 +275,32 @@ def to_xarray(plan: Plan, directory: str | Path) -> xarray.Dataset:
     InputError
         If the index can't be used, or xarray is not installed.
     """
-    return dataset(plan, rows(plan, directory))
+    try:
+        import xarray
+    except ImportError:
+        raise InputError("xarray", "is not installed: pip install 'fastpin[xarray]'") from None
+    table, product = rows(plan, directory), math.prod(map(len, plan.axes.values()))
+    listed = [name for name in plan.fields if name not in plan.axes]
+    sizes = {LISTED: len(table) // product} if listed else {}
+    sizes |= {name: len(values) for name, values in plan.axes.items()}
+    shape, dimensions = tuple(sizes.values()), [*sizes]
+    coordinates: dict[str, Any] = {}
+    for name, values in plan.axes.items():
+        coordinates[name] = [name], _coordinate(values), _field_attributes(plan, name)
+    if listed:
+        coordinates[LISTED] = [LISTED], np.arange(1, sizes[LISTED] + 1), {"long_name": "[[list]] block of the plan"}
+        first = table[::product]
+        for name in listed:
+            coordinates[name] = [LISTED], _coordinate([row[name] for row in first]), _field_attributes(plan, name)
+    variables: dict[str, Any] = {}
+    for name in (*plan.outcomes, *KEY_FIGURES):
+        known = [row.get(name) if row["status"] == DONE else None for row in table]
+        numbers = [np.nan if value is None else value for value in known]
+        variables[name] = dimensions, np.array(numbers, dtype=float).reshape(shape), _attributes(plan, table, name)
+    for name in ("status", "reason", "id"):
+        texts = np.array([row.get(name) or "" for row in table], dtype=str)
+        variables[name] = dimensions, texts.reshape(shape), {"long_name": f"{name} of the run"}
+    return xarray.Dataset(variables, coordinates, {"title": plan.title} if plan.title else {})
 
 
 def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:
@@ -311,20 +338,6 @@ def _missing_outcomes(index: Index, plan: Plan, points: dict[str, Point], result
     return {run: names for run, names in missing.items() if names}
 
 
-class _Counter:
-    """Counts the runs that have ended, and reports each."""
-
-    def __init__(self, report: SweepProgress, total: int) -> None:
-        self._report, self._ended, self.total = report, 0, total
-        report(0, total)
-
-    def add(self, runs: int) -> None:
-        """Count and report some runs."""
-        for _ in range(runs):
-            self._ended += 1
-            self._report(self._ended, self.total)
-
-
 def _write_files(way: type[OfCases | OfJoints], index: Index, points: Iterable[str], results: Path) -> None:
     """Write the results of finished runs that are only in the index to files."""
     for run, (state, _) in _now(index, points, results).items():
@@ -341,8 +354,7 @@ def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[
     """
     files = {path.stem: _is_hdf5(path) for path in results.glob("[!.]*.h5")}  # Unfinished files begin with a dot.
     present = {run for run, whole in files.items() if whole} | (index.packed() - files.keys())
-    waiting = WAITING, None
-    known = index.statuses()
+    waiting, known = (WAITING, None), index.statuses()
     stored = {run: known.get(run, waiting) for run in points}
     return {run: waiting if entry[0] == DONE and run not in present else entry for run, entry in stored.items()}
 
@@ -488,42 +500,6 @@ def _check_agreement(first_row: dict[str, Any], second_row: dict[str, Any], sour
 LISTED = "run"
 """The dimension of the [[list]] blocks of a plan."""
 
-NamedAttributes = dict[str, Any]
-
-
-def dataset(plan: Plan, rows: Sequence[Mapping[str, Any]]) -> xarray.Dataset:
-    """Return the rows of all points of a plan as a dataset, see :func:`fastpin.studies.sweep.to_xarray`."""
-    try:
-        import xarray
-    except ImportError:
-        raise InputError("xarray", "is not installed: pip install 'fastpin[xarray]'") from None
-    listed = [name for name in plan.fields if name not in plan.axes]
-    sizes = {LISTED: len(rows) // _product(plan.axes)} if listed else {}
-    sizes |= {name: len(values) for name, values in plan.axes.items()}
-    shape, dimensions = tuple(sizes.values()), [*sizes]
-    coordinates: dict[str, Any] = {}
-    for name, values in plan.axes.items():
-        coordinates[name] = [name], _coordinate(values), _field_attributes(plan, name)
-    if listed:
-        coordinates[LISTED] = [LISTED], np.arange(1, sizes[LISTED] + 1), {"long_name": "[[list]] block of the plan"}
-        first = rows[:: _product(plan.axes)]
-        for name in listed:
-            coordinates[name] = [LISTED], _coordinate([row[name] for row in first]), _field_attributes(plan, name)
-    variables: dict[str, Any] = {}
-    for name in (*plan.outcomes, *KEY_FIGURES):
-        known = [row.get(name) if row["status"] == DONE else None for row in rows]
-        numbers = [np.nan if value is None else value for value in known]
-        variables[name] = dimensions, np.array(numbers, dtype=float).reshape(shape), _attributes(plan, rows, name)
-    for name in ("status", "reason", "id"):
-        texts = np.array([row.get(name) or "" for row in rows], dtype=str)
-        variables[name] = dimensions, texts.reshape(shape), {"long_name": f"{name} of the run"}
-    return xarray.Dataset(variables, coordinates, {"title": plan.title} if plan.title else {})
-
-
-def _product(axes: Mapping[str, Sequence[Any]]) -> int:
-    """Number of points of the grid."""
-    return int(np.prod([len(values) for values in axes.values()], dtype=int))
-
 
 def _coordinate(values: Sequence[Any]) -> np.ndarray:
     """Return the values of a field as numbers, NaN where missing; or as text, in the notation of JSON where no text."""
@@ -533,19 +509,19 @@ def _coordinate(values: Sequence[Any]) -> np.ndarray:
     return np.array(texts, dtype=str)
 
 
-def _field_attributes(plan: Plan, name: str) -> NamedAttributes:
+def _field_attributes(plan: Plan, name: str) -> dict[str, Any]:
     """Unit and words of a varied field. Its values are in the units of the case file."""
     unit = units(plan.problem).get(plan.base.kind(name))
     return {"units": unit.name if unit else "", "long_name": plan.words(name)}
 
 
-def _attributes(plan: Plan, rows: Sequence[Mapping[str, Any]], name: str) -> NamedAttributes:
+def _attributes(plan: Plan, rows: Sequence[Mapping[str, Any]], name: str) -> dict[str, Any]:
     """Unit and words of an outcome or a key figure, per metre of thickness as in :func:`fastpin.studies.sweep.load`."""
     names = plan.base.unit_names(plan.case(plan.points[0]))
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
         names = {}
     number = plan.numbers[name]
-    found: NamedAttributes = {"units": number.unit_in({kind: Unit(1.0, unit) for kind, unit in names.items()}).name}
+    found: dict[str, Any] = {"units": number.unit_in({kind: Unit(1.0, unit) for kind, unit in names.items()}).name}
     if number.classes:
         found["flag_values"] = [float(value) for value in number.classes]
         found["flag_meanings"] = " ".join(word.replace(" ", "_") for word in number.classes.values())

@@ -1,4 +1,4 @@
-"""The work of a sweep: batches of runs for an executor, or for a pool of processes that survives their deaths."""
+"""Batches of runs for an executor, or for a pool of processes that survives their deaths: sweeps, and many cases."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import socket
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Collection, Generator, Iterator
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -24,9 +24,12 @@ from typing import Any, TypeVar
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError, InputError
-from fastpin.model.doubts import doubts_given
+from fastpin.model.case import Case
+from fastpin.model.checks import instance, items, whole_number
+from fastpin.model.doubts import doubts, doubts_given, warn_of
 from fastpin.runtime.jit import limit_to_one_thread
 from fastpin.runtime.threads import in_one_thread
+from fastpin.solver import Result, solve
 from fastpin.storage import layout
 from fastpin.studies.index import Index
 from fastpin.studies.outcomes import OutcomeValue, check_loadable, pickled, values_in_worker
@@ -49,6 +52,7 @@ Batch = tuple[K, ...]
 
 Submit = Callable[[Executor, Batch[K]], "Future[list[T]]"]
 """Submits a batch to an executor."""
+
 
 Size = Callable[[int], int]
 """Number of tasks of the next batch, from the number of tasks that wait."""
@@ -123,13 +127,8 @@ Ended = Generator[tuple[Batch[K], list[T] | BaseException], None, None]
 """Yields each batch with its return values or exception when it ends."""
 
 
-def single(waiting: int) -> int:
-    """A batch of one task, however many are waiting."""
-    return 1
-
-
 def through(
-    executor: Executor, waiting: deque[K], submit: Submit[K, T], size: Size = single, ahead: int = MOST_SUBMITTED
+    executor: Executor, waiting: deque[K], submit: Submit[K, T], size: Size = lambda _: 1, ahead: int = MOST_SUBMITTED
 ) -> Ended[K, T]:
     """Run tasks with any executor. Yield each batch with its return values or exception when it ends.
 
@@ -149,7 +148,7 @@ def through(
                 try:
                     future = submit(executor, batch)
                 except RuntimeError:  # The executor is broken, or shut down.
-                    raise BrokenError(_tasks(running)) from None
+                    raise BrokenExecutor from None
                 running[future] = batch
                 for _ in batch:
                     waiting.popleft()
@@ -160,18 +159,14 @@ def through(
                 raise error
             yield running.pop(future), future.result() if error is None else error
     except (BrokenExecutor, CancelledError):  # A task ended with it.
-        raise BrokenError(_tasks(running)) from None
+        raise BrokenError([task for batch in running.values() for task in batch]) from None
     finally:
         for future in running:
             future.cancel()
 
 
-def _tasks(running: dict[Future[list[T]], Batch[K]]) -> list[K]:
-    return [task for batch in running.values() for task in batch]
-
-
 def through_processes(
-    workers: int, tasks: Collection[K], submit: Submit[K, T], size: Size = single, alone: bool = False
+    workers: int, tasks: Collection[K], submit: Submit[K, T], size: Size = lambda _: 1, alone: bool = False
 ) -> Ended[K, T]:
     """Run tasks in worker processes. Yield each batch with its return values or exception when it ends.
 
@@ -194,11 +189,6 @@ def through_processes(
             yield from (((task,), WorkerDiedError(DIED)) for task in suspects)
         elif suspects:
             yield from through_processes(1, suspects, submit, alone=True)
-
-
-def in_turn(function: Callable[..., T], batch: list[tuple[Any, ...]]) -> list[T]:
-    """Call a function with the arguments of each task of a batch: what a worker does."""
-    return [function(*arguments) for arguments in batch]
 
 
 def prepare() -> None:
@@ -248,6 +238,14 @@ class Setting:
         return None if self.version == __version__ else other
 
 
+def in_turn(function: Callable[..., RunEnd], batch: list[tuple[Any, ...]], setting: Setting) -> list[RunEnd]:
+    """Call a function with the arguments of each run of a batch, its id first, and the setting: what a worker does."""
+    if (refused := setting.begin()) is not None:
+        return [RunEnd(run, refused) for run, *_ in batch]
+    with in_one_thread(), doubts_given():
+        return [function(*arguments, setting) for arguments in batch]
+
+
 def solve_run(run: str, case: Any, path: str, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:
     """Solve one case or joint, pack or save its result, and read its outcomes.
 
@@ -268,14 +266,11 @@ def solve_run(run: str, case: Any, path: str, outcomes: PickledOutcomes, setting
         Key figures, times, outcomes and the packed result. Every exception of the run becomes the reason of a failure.
         An exception of an outcome becomes the reason of its missing value.
     """
-    if (refused := setting.begin()) is not None:
-        return RunEnd(run, refused)
     started, host = datetime.now(UTC).isoformat(timespec="milliseconds"), socket.gethostname()
     ended = functools.partial(RunEnd, run, started=started, host=host, versions=layout.versions())
     began, way = time.perf_counter(), RUNS[setting.form]
     try:
-        with in_one_thread(), doubts_given():
-            solved = way.solve(case)
+        solved = way.solve(case)
         result, reason = solved
         seconds = time.perf_counter() - began
         if result is None or not len(result):
@@ -298,10 +293,8 @@ def read_run(run: str, path: str, content: bytes | None, outcomes: PickledOutcom
     Returns
     -------
     RunEnd
-        The outcomes and their time. A reason: the result can't be read, or the worker has another version of fastpin.
+        The outcomes and their time. A reason: the result can't be read.
     """
-    if (refused := setting.begin()) is not None:
-        return RunEnd(run, refused)
     began = time.perf_counter()
     try:
         result = RUNS[setting.form].read(path, content)
@@ -370,7 +363,7 @@ class Work:
         def task(run: str) -> tuple[Any, ...]:
             outcomes = {} if run in submitted else self.outcomes
             submitted.add(run)
-            return run, self.plan.case(self.plan.runs[run]), str(self._path(run)), outcomes, self._setting
+            return run, self.plan.case(self.plan.runs[run]), str(self._path(run)), outcomes
 
         for run in todo:
             self._path(run).unlink(missing_ok=True)  # A damaged file, or the states of a failed run.
@@ -382,7 +375,7 @@ class Work:
         def task(run: str) -> tuple[Any, ...]:
             path = self._path(run)
             packed = None if path.exists() else self.index.content(run)
-            return run, str(path), packed, {name: self.outcomes[name] for name in missing[run]}, self._setting
+            return run, str(path), packed, {name: self.outcomes[name] for name in missing[run]}
 
         def known(end: RunEnd) -> RunEnd:
             if end.reason is None:
@@ -408,7 +401,7 @@ class Work:
         pace = Pace(self.workers)
 
         def submit(executor: Executor, batch: Batch[str]) -> Future[list[RunEnd]]:
-            return executor.submit(in_turn, function, [task(run) for run in batch])
+            return executor.submit(in_turn, function, [task(run) for run in batch], self._setting)
 
         # An executor may run its tasks in this process. They have one thread for BLAS, as in every worker.
         with threadpool_limits(limits=1, user_api="blas"):
@@ -465,3 +458,66 @@ def _arrived(end: RunEnd, path: Path) -> RunEnd:
     if end.reason is None and end.content is None and not path.exists():
         return RunEnd(end.id, f"the result did not arrive: {end.host} must see {path.parent} under the same path")
     return end
+
+
+def solve_many(cases: Iterable[Case], workers: int = 1) -> list[Result | FastpinError]:
+    """Solve many cases, and return the result of each, or its error.
+
+    A case that fails does not stop the others. Every result has the bits of :func:`fastpin.solve`, with any number of
+    workers. Doubts about the input are warned of before the first case is solved. Yield is not looked for.
+
+    Parameters
+    ----------
+    cases : iterable of Case
+        For example of :func:`fastpin.read_case`, or ``Case(problem, history, options)``.
+    workers : int
+        Number of processes. With 1 the cases are solved in this process. With more the call must stand under
+        ``if __name__ == "__main__"``, because the processes import the script.
+
+    Returns
+    -------
+    list of Result or FastpinError
+        In the order of the cases. The message of an error names the place of its case: ``"cases[3]: ..."``, from 0. A
+        :class:`fastpin.SolveError` has the states before it in its ``result``.
+
+    Raises
+    ------
+    InputError
+        If an argument can't be used.
+    """
+    given = {f"cases[{k}]": case for k, case in enumerate(items("cases", cases, "a list of cases"))}
+    for place, case in given.items():
+        instance(place, case, Case, "a Case")
+    whole_number("workers", workers, 1)
+    warn_of([doubt for case in given.values() for doubt in doubts(case.problem, case.history, case.options)], 2)
+    if workers == 1:
+        return solve_in_turn(given)
+
+    def submit(executor: Executor, batch: Batch[str]) -> Future[list[Result | FastpinError]]:
+        return executor.submit(solve_in_turn, {place: given[place] for place in batch})
+
+    batches = through_processes(workers, given, submit, lambda left: min(MOST_IN_BATCH, -(-left // (4 * workers))))
+    found: dict[str, Result | FastpinError] = {}
+    with closing(batches):
+        for batch, ends in batches:
+            if isinstance(ends, BaseException):
+                ends = [FastpinError(f"{place}: {ends}") for place in batch]
+            found |= zip(batch, ends, strict=True)
+    return [found[place] for place in given]
+
+
+def solve_in_turn(cases: dict[str, Case]) -> list[Result | FastpinError]:
+    """Return the result or the error of each case, one after the other. Errors name the places that are the keys."""
+    ends: list[Result | FastpinError] = []
+    with doubts_given():
+        for place, case in cases.items():
+            try:
+                ends.append(solve(case.problem, case.history, **case.options.keywords()))
+            except InputError as error:
+                ends.append(InputError(place, str(error)))
+            except FastpinError as error:
+                error.args = (f"{place}: {error}",)
+                ends.append(error)
+            except Exception as error:  # It is the failure of this case only.
+                ends.append(FastpinError(f"{place}: {type(error).__name__}: {error}"))
+    return ends

@@ -149,9 +149,9 @@ def test_python_runs(page: Path, names: dict[str, Any]) -> None:
 
 
 def run_as_script(codes: list[str]) -> None:
-    """Run the last two blocks of the page on sweeps, in a process of its own: workers import the script."""
-    *_, script, outcomes = codes
-    lines = "".join(f"    {line}\n" for line in outcomes.splitlines())
+    """Run the last three blocks of the page on sweeps, in a process of its own: workers import the script."""
+    *_, script, outcomes, many = codes
+    lines = "".join(f"    {line}\n" for line in f"{outcomes}\n{many}\nassert len(peaks) == 2".splitlines())
     Path("script.py").write_text(f"from wear import wear\n\n{script}\n{lines}", encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{Path.cwd()}"}
     said = finished([sys.executable, "script.py"], cwd=Path.cwd(), env=environment).stdout

@@ -58,5 +58,5 @@ def test_a_packed_joint_keeps_its_seat() -> None:
     result = sample_seat()
     content = store.pack(result, None, 10**7)
     assert packed.from_bytes(content).attrs["format_version"] == WITH_SEAT == 5
-    back = store.unpack(content, Path("a")).seat
+    back = store.unpack(content, Path("a"))[0].seat
     assert all(np.array_equal(one.slip, other.slip) for one, other in zip(back, result.seat, strict=True))

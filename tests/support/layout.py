@@ -99,7 +99,7 @@ BY_NAME = ("import_module", "__import__", "Later")
 MOST_LINES = 600
 MOST_FUNCTION_LINES = 50
 MOST_PARAMETERS = 8
-MOST_PUBLIC_NAMES = 44
+MOST_PUBLIC_NAMES = 45
 
 UPWARD = {
     "bodies/compliance.py": "the stress away from the hole takes integrals, which few plates need",
