@@ -84,3 +84,34 @@ def beam(material: Material, radius: float, edges: Sequence[float], first: int, 
     ])  # fmt: skip
     displacements, forces = np.split(turned * (length / count), 2, axis=1)
     return Coherence(displacements, -forces, -forces[:, :first].mean(axis=1))
+
+
+def bending_moments(
+    material: Material, radius: float, edges: Sequence[float], heads: float, loads: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The moments in a pin of :func:`beam` under the loads on its sections, from these loads alone.
+
+    Between the places they are linear.
+
+    Parameters
+    ----------
+    material, radius, edges, heads
+        See :func:`beam`.
+    loads : ndarray, shape (S, 2)
+        Forces on the pin along x and y, N; they are in balance.
+
+    Returns
+    -------
+    places : ndarray, shape (S + 2,)
+        Both ends and the middles of the sections, m.
+    moments : ndarray, shape (S + 2, 2)
+        By the forces along x and along y, N m.
+    """
+    ends = np.asarray(edges, dtype=float)
+    middles, length = 0.5 * (ends[1:] + ends[:-1]), float(ends[-1])
+    places = np.r_[0.0, middles, length]
+    ratio = heads * length / (material.E * 0.25 * math.pi * radius**4)
+    held = ratio / (2.0 + ratio) if math.isfinite(ratio) else 1.0
+    lever = length - middles
+    at_head = -(0.5 * (1.0 - held) * lever + held * 0.5 * lever**2 / length) @ loads  # both heads turn by their moments
+    return places, at_head + np.maximum(places[:, None] - middles, 0.0) @ loads

@@ -433,10 +433,14 @@ class Joint:
         """What ties the sections of a pin to one another, SI."""
         of = [next(plate for plate in self.plates if plate.name == name) for name in pin.plates]
         if isinstance(pin.flexibility, str):
-            edges = list(itertools.accumulate((one.thickness for plate in of for one in plate.across), initial=0.0))
-            return beam(pin.material, pin.radius, edges, of[0].slices, pin.heads or 0.0)
+            return beam(pin.material, pin.radius, self.edges(pin), of[0].slices, pin.heads or 0.0)
         soft = [0.0 if number else pin.flexibility for plate in of for number in range(plate.slices)]
         return springs(soft[1:])
+
+    def edges(self, pin: JointPin) -> list[float]:
+        """The faces of all slices along a pin, from its end in its first plate, m."""
+        own = (plate.thickness for one, plate in self.sections if one is pin)
+        return list(itertools.accumulate(own, initial=0.0))
 
     def lug(self, pin: str, plate: str) -> tuple[Lug, tuple[str, ...]]:
         """A plate as a lug round the hole of a pin, and the names of its further pinned holes.

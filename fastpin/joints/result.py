@@ -16,7 +16,8 @@ from fastpin.cracks.growing import Growth, planned_growth
 from fastpin.damage.assessed import assessed_fatigue
 from fastpin.damage.spectrum import SpectrumDamage
 from fastpin.errors import InputError
-from fastpin.joints.parts import Joint, whole_name
+from fastpin.joints.bending import bending_moments
+from fastpin.joints.parts import BEAM, Joint, whole_name
 from fastpin.model import crack as crack_model
 from fastpin.model.assessment import FatigueAssessment, check_assessment
 from fastpin.model.checks import check_callable, instance, known_name, string, true_or_false
@@ -125,6 +126,24 @@ class JointState:
         Unknown names raise :class:`InputError`.
         """
         return np.asarray(self.forces[self.joint.places(pin, plate)].sum(axis=0))
+
+    def bending(self, pin: str) -> tuple[np.ndarray, np.ndarray]:
+        """The moments in a pin that is a beam, see :func:`fastpin.joints.bending.bending_moments`.
+
+        Raises
+        ------
+        InputError
+            If the name is unknown, or the pin is no beam.
+        """
+        joint = self.joint
+        known_name("pin", pin, [one.name for one in joint.pins])
+        of = next(one for one in joint.pins if one.name == pin)
+        if of.flexibility != BEAM:
+            raise InputError("pin", f'{pin} does not bend: flexibility = "{BEAM}" makes it a beam')
+        loads = -self.forces[[place for place, (one, _) in enumerate(joint.sections) if one is of]]
+        first = len(joint.places(pin, of.plates[0]))
+        loads[:first] += np.array([self.load[f"{pin}.{axis}"] for axis in "xy"]) / first
+        return bending_moments(of.material, of.radius, joint.edges(of), of.heads or 0.0, loads)
 
     @property
     def moments(self) -> np.ndarray:

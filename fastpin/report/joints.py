@@ -24,7 +24,7 @@ from fastpin.joints import (
     SectionDamage,
     SectionMargin,
 )
-from fastpin.joints.parts import whole_name
+from fastpin.joints.parts import BEAM, whole_name
 from fastpin.model import angles, ties
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.doubts import doubts_given
@@ -135,6 +135,8 @@ def describe(judged: Judged) -> str:
     parts = [*head, "", forces_table(result), "", largest_table(result)]
     if joint.faying:
         parts += ["", faying_table(result)]
+    if rows := bending_rows(result):
+        parts += ["", bending_table(joint, rows)]
     return "\n".join([*parts, *margin_lines(judged), *fatigue_lines(judged), *crack_lines(judged)])
 
 
@@ -202,6 +204,33 @@ def faying_table(result: JointResult) -> str:
     columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
     columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
     return table(columns)
+
+
+def bending_table(joint: Joint, rows: list[dict[str, Any]]) -> str:
+    """Return the largest bending of each pin that is a beam."""
+    unit = joint_units(joint)
+    columns: list[Column] = [("pin", "", [row["pin"] for row in rows])]
+    shown = {"moment": ("largest moment", "moment"), "stress": ("bending stress", "traction")}
+    for key, (name, kind) in (shown | {"place": ("from its end", "length")}).items():
+        columns.append(_column(name, [row[key] for row in rows], unit[kind]))
+    return table([*columns, ("load point", "", [str(row["step"]) for row in rows])])
+
+
+def bending_rows(result: JointResult) -> list[dict[str, Any]]:
+    """The largest bending moment of all states in each pin that is a beam, SI, and its stress 32 M/(pi d^3).
+
+    The place counts along the pin from its end in its first plate. d is the diameter of the hole.
+    """
+    rows = []
+    for pin in (pin for pin in result.joint.pins if pin.flexibility == BEAM):
+        found = [state.bending(pin.name) for state in result.states.bare]
+        sizes = np.array([np.hypot(*moments.T) for _, moments in found])
+        step, at = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
+        moment = float(sizes[step, at])
+        stress = 4.0 * moment / (math.pi * pin.radius**3)
+        place = float(found[step][0][at])
+        rows.append({"pin": pin.name, "moment": moment, "stress": stress, "place": place, "step": int(step) + 1})
+    return rows
 
 
 def margin_lines(judged: Judged) -> list[str]:
@@ -533,6 +562,13 @@ JOINT = (
             for place in range(len(judged.result.joint.faying) * bool(len(judged.result)))
         ],
         parts=FAYING,
+    ),
+    Output(
+        "bending", "list", lambda judged: bending_rows(judged.result) if len(judged.result) else [], optional=True,
+        parts=(
+            Output("pin", "text"), Output("moment", "moment"), Output("stress", "traction"),
+            Output("place", "length"), Output("step", "whole"),
+        ),
     ),
     Output("margins", of=_margins, form=list_of(schema_of((*NAMES, *margins.ROW)))),
     Output(

@@ -13,7 +13,7 @@ import pytest
 from fastpin import figures, report
 from fastpin.assess import outputs
 from fastpin.joints import Clamp, Joint, JointPin, JointPlate, JointResult, SectionCrack, parse_joint, solve_joint
-from fastpin.joints.bending import SHEAR, beam, springs
+from fastpin.joints.bending import SHEAR, beam, bending_moments, springs
 from fastpin.lugs.outline import PartLoad, rectangle
 from fastpin.model.crack import CrackGrowth
 from tests.support.laps import ALUMINIUM, BETA, FORCE, SHEETS, STEEL, lap
@@ -234,3 +234,32 @@ def test_names_of_slices_are_checked(short: JointResult) -> None:
     words = "plate: lug.1 is a slice: its stress is known near its holes only"
     assert str(refused(short.of, "pin", "lug.1", whole=True)) == words
     assert str(refused(short.crack_growth, crack)) == words
+
+
+@pytest.mark.parametrize(("heads", "ends", "middle"), [(0.0, 0.0, -0.25), (math.inf, 0.125, -0.125)])
+def test_the_moments_of_a_beam_under_a_force_in_its_middle(heads: float, ends: float, middle: float) -> None:
+    edges = [0.0, 1e-9, 1.0 - 1e-9, 1.0 + 1e-9, 2.0 - 1e-9, 2.0]
+    loads = np.array([[-0.5, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 0.0], [-0.5, 0.0]])
+    places, moments = bending_moments(STEEL, 0.1, edges, heads, loads)
+    assert (places[0], places[-1]) == (0.0, 2.0)
+    np.testing.assert_allclose(moments[[0, 3, -1], 0], 2.0 * np.array([ends, middle, ends]), atol=1e-8)
+    assert not moments[:, 1].any()
+
+
+@pytest.mark.gate
+def test_the_bending_of_a_pin_is_told(short: JointResult) -> None:
+    result, joint = short, short.joint
+    (row,) = report.joints.bending_rows(result)
+    places, moments = result[0].bending(row["pin"])
+    loads = -result[0].forces
+    middles = places[1:-1]
+    by_hand = [float(np.hypot(*((np.maximum(at - middles, 0.0)) @ loads))) for at in places]
+    assert row["moment"] == pytest.approx(max(by_hand), rel=1e-6)
+    assert row["stress"] == pytest.approx(32.0 * row["moment"] / (math.pi * (2.0 * joint.radius) ** 3))
+    assert row["place"] in places
+    assert moments.shape == (len(places), 2)
+    judged = report.joints.judged(result)
+    document = outputs.whole_document(report.joints.JOINT, judged, report.joints.joint_units(joint), title="")
+    assert document["bending"][0]["pin"] == row["pin"]
+    assert "bending stress" in report.joints.describe(judged)
+    assert str(refused(result[0].bending, "z")).startswith("pin: must be")
