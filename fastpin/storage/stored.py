@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
@@ -14,7 +14,8 @@ from fastpin.model.case import Case
 from fastpin.model.checks import file_path, whole_number
 from fastpin.model.history import MAX_CORNERS
 from fastpin.solver.result import Result
-from fastpin.states.extremes import AT_ONCE, Found, yield_extremes
+from fastpin.states import extremes
+from fastpin.states.extremes import AT_ONCE, Found, KeptStates
 from fastpin.states.state import State
 from fastpin.storage import hdf5, journal, layout
 from fastpin.storage.held import Held
@@ -131,10 +132,14 @@ class StoredResult(Held):
             return points
 
     @cached_property
+    def few(self) -> list[State] | None:
+        """All states if they are few: reading them one after the other took half of a ``fastpin run``."""
+        return self._read(ALL).states if self.points.size <= AT_ONCE else None
+
+    @cached_property
     def extremes(self) -> Found:
         """The extremes of all states that texts and figures show."""
-        with self.opened() as file:
-            return read_extremes(file)
+        return self._found(extremes.marked_extremes)
 
     @cached_property
     def residuals(self) -> dict[str, float]:
@@ -153,7 +158,7 @@ class StoredResult(Held):
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Return the states at these places, in increasing order."""
-        return self._read(list(places)).states
+        return self._read(list(places)).states if self.few is None else [self.few[place] for place in places]
 
     def whole(self) -> Result:
         """Return the result with all its states."""
@@ -164,8 +169,14 @@ class StoredResult(Held):
             return read_result(file, self.path, states)[0]
 
     def _yield_extremes(self) -> Found:
+        return self._found(extremes.yield_extremes)
+
+    def _found(self, find: Callable[[KeptStates], Found]) -> Found:
+        """The extremes that `find` finds among all states, or those that the file names."""
+        if self.few is not None:
+            return find(KeptStates(self.few)) if self.few else Found()
         with self.opened() as file:
-            return read_extremes(file, yield_extremes)
+            return read_extremes(file, find)
 
 
 def load_points(path: str | Path) -> np.ndarray:

@@ -177,7 +177,7 @@ def _block_of(rows: layout.Rows, loads: np.ndarray, marks: list[str]) -> StateBl
     return StateBlock(rows["pressure"], rows["shear"], rows["status"], loads, *more)
 
 
-def read_extremes(file: h5py.File, find: Callable[[KeptStates], Found] = extremes.marked_extremes) -> Found:
+def read_extremes(file: h5py.File, find: Callable[[KeptStates], Found]) -> Found:
     """Return the extremes of all states of a file: those that it names, or those that are found."""
     kept = StoredStates.of(file)
     return _stored(file, kept) or find(kept)

@@ -62,7 +62,25 @@ def test_each_reading_opens_the_file_but_in_a_block_it_stays_open(path, opened):
     assert len(opened) == 1
 
 
-def test_a_file_that_another_run_has_replaced_is_opened_again(path, opened):
+def test_few_states_are_read_at_once(path, opened, monkeypatch):
+    stored = StoredResult(path)
+    first, *_, last = stored.read([0, 1, 2])
+    reads = len(opened)
+    assert stored.read([2]) == [last]
+    assert stored.read([0]) == [first]
+    found = stored.extremes
+    assert len(opened) == reads
+    monkeypatch.setattr(storage.stored, "AT_ONCE", 2)
+    many = StoredResult(path)
+    assert many.few is None
+    assert many.extremes == found
+    for one, other in zip(many.read([0, 1, 2]), stored.read([0, 1, 2]), strict=True):
+        assert np.array_equal(one.pressure, other.pressure)
+    assert len(opened) > reads
+
+
+def test_a_file_that_another_run_has_replaced_is_opened_again(path, opened, monkeypatch):
+    monkeypatch.setattr(storage.stored, "AT_ONCE", 1)
     other = solve(PROBLEM, HISTORY[:2], nodes=61)
     with StoredResult(path) as stored:
         assert len(stored.read([0, 1, 2])) == 3
@@ -71,12 +89,13 @@ def test_a_file_that_another_run_has_replaced_is_opened_again(path, opened):
     assert len(opened) == 3  # save looks at the old file
 
 
-def test_a_run_that_writes_does_not_wait_for_the_end_of_a_block(path, opened):
+def test_a_run_that_writes_does_not_wait_for_the_end_of_a_block(path, opened, monkeypatch):
+    monkeypatch.setattr(storage.stored, "AT_ONCE", 1)
     journal.journal_of(path).touch()
     with StoredResult(path) as stored:
         stored.read([0])
         stored.read([1])
-    assert len(opened) == 2
+    assert len(opened) == 3  # the load points say how many states there are
 
 
 @pytest.mark.gate
