@@ -24,7 +24,7 @@ import numpy as np
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, make_drive
 from fastpin.elasticity.operator import DenseOperator, Operator, make_operator, uniform_part
 from fastpin.elasticity.terms import BodyTerms, body_terms, thermal_columns
-from fastpin.kernels.arrays import Equations
+from fastpin.kernels.arrays import Equations, Loading
 from fastpin.model.grid import Grid, arc_of
 from fastpin.model.loads import ACTING, FRICTION_CHANGE, LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, TEMPERATURE, M, P, Q
 from fastpin.model.problem import Problem
@@ -226,6 +226,12 @@ class System:
         return Equations(*matrices)
 
     @cached_property
+    def loading(self) -> Loading:
+        """The arrays of the loads for kernels, all in the order of C."""
+        work = self.both_weights[:, None] * self.drive.columns
+        return Loading(*map(np.ascontiguousarray, (self.loads, work, self.forces)))
+
+    @cached_property
     def held_tables(self) -> OrderedDict[bytes, Any]:
         """The latest tables of held contacts, by their closed nodes; see :func:`fastpin.solver.held.known_table`."""
         return OrderedDict()
@@ -265,11 +271,6 @@ class System:
             rows[:2, normal], rows[:2, shear] = (cos, sin), (sin, -cos)
             rows[2, shear] = -(rim.radius**2) * rim.grid.weights
         return found
-
-    @cached_property
-    def resultant_sizes(self) -> np.ndarray:
-        """The absolute values of :attr:`resultants`: they give the resultants of the absolute tractions."""
-        return np.abs(self.resultants)
 
     @cached_property
     def ends(self) -> np.ndarray:

@@ -18,7 +18,7 @@ from fastpin.joints.system import CENTRING, PinSection, PinsSystem
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.lugs.several_holes import HolesCompliance
 from fastpin.model.loads import LOADS
-from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, contact_residuals
+from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, review
 from fastpin.solver.errors import ConvergenceError
 from fastpin.states.state import State
 
@@ -84,7 +84,7 @@ class StateMaker:
             If the configuration violates the contact conditions, or the equilibrium of a pin or a plate.
         """
         system, scales = self._system, self._system.scales
-        residuals = contact_residuals(system.resting(now.rest), now, system.elastic(now.tractions))
+        residuals = review(system.resting(now.rest), now).residuals
         residuals["bodies"] = unbalanced(system, now)
         worst = max(residuals, key=lambda name: residuals[name])
         if not residuals[worst] <= MAX_RESIDUAL:

@@ -102,22 +102,22 @@ class Equations(NamedTuple):
     friction: np.ndarray
 
 
-class RightSides(NamedTuple):
-    """What loads and the resting pin add to the equations.
+class Loading(NamedTuple):
+    """What loads do. A load vector may be longer: its further loads do nothing here.
 
     Attributes
     ----------
-    loaded : ndarray, shape (2n,)
-        Gap and slip of the load.
-    forces : ndarray, shape (m,)
-        Right sides of the conditions of equilibrium.
-    rest_gap : ndarray, shape (n,)
-        The rest gap.
+    columns : ndarray, shape (2n, loads)
+        Maps the loads to gap and slip.
+    work : ndarray, shape (2n, loads)
+        Maps the loads to gap and slip without the prescribed displacements, times the weights of the nodes.
+    forces : ndarray, shape (m, loads)
+        Maps the loads to the right sides of equilibrium.
     """
 
-    loaded: np.ndarray
+    columns: np.ndarray
+    work: np.ndarray
     forces: np.ndarray
-    rest_gap: np.ndarray
 
 
 class LoadTerms(NamedTuple):

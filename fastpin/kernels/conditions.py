@@ -38,6 +38,15 @@ def _largest(values):
 
 
 @inner
+def of_load(columns, load, found):
+    """Set the first rows of the product of `columns` (k, loads) and a `load`, as many as `found` has numbers."""
+    for i in range(found.size):
+        found[i] = 0.0
+        for k in range(columns.shape[1]):
+            found[i] += columns[i, k] * load[k]
+
+
+@inner
 def _displaced(equations, i, motion, elastic, loaded):
     """Gap (without the rest gap) or slip of row i."""
     moved = 0.0
@@ -47,45 +56,68 @@ def _displaced(equations, i, motion, elastic, loaded):
 
 
 @inner
-def _balance(equations, values, forces, k):
-    """What condition of equilibrium k lacks, and the sum of the sizes of its terms."""
+def _carried(matrix, values, k):
+    """The product of row k of a matrix (r, 2n) and the tractions, and the sum of the sizes of its terms."""
     n, carried, size = values.status.size, 0.0, 0.0
     for i in range(n):
-        normal = equations.equilibrium[k, i] * values.pressure[i]
-        tangential = equations.equilibrium[k, n + i] * values.shear[i]
+        normal, tangential = matrix[k, i] * values.pressure[i], matrix[k, n + i] * values.shear[i]
         carried += normal + tangential
         size += abs(normal) + abs(tangential)
+    return carried, size
+
+
+@inner
+def _balance(equations, values, forces, k):
+    """What condition of equilibrium k lacks, and the sum of the sizes of its terms."""
+    carried, size = _carried(equations.equilibrium, values, k)
     for j in range(values.motion.size):
         carried += equations.motion_rows[k, j] * values.motion[j]
     return forces[k] - carried, size
 
 
 @compiled
-def residuals(equations, values, elastic, loaded, forces, rest_gap, concentric_gap):
-    """Largest relative violation of each contact condition.
+def review(
+    equations, loading, resultants, weights, values, elastic, load, rest_gap, concentric_gap, force, moment, is_held,
+):  # fmt: skip
+    """The violations of the contact conditions, what is out of equilibrium, and the elastic energy.
 
     Parameters
     ----------
     equations : Equations
+    loading : Loading
+    resultants : ndarray, shape (3 interfaces, 2n)
+        Maps (N, T) to the forces along x and y and the moment that each interface passes on.
+    weights : ndarray, shape (n,)
     values : ContactValues
         The contact.
-    elastic, loaded : ndarray, shape (2n,)
-        Elastic part of gap and slip, and the part of the loads.
-    forces : ndarray, shape (m,)
-        Right sides of the conditions of equilibrium.
+    elastic : ndarray, shape (2n,)
+        Elastic part of gap and slip.
+    load : ndarray, shape (loads,)
     rest_gap, concentric_gap : ndarray, shape (n,)
+    force : ndarray, shape (2,)
+    moment : float
+        Force and moment on the pin.
+    is_held : bool
+        Whether the moment is the one that the interface of the pin passes on.
 
     Returns
     -------
-    (float, float, float, float)
-        "gap" and "slip" relative to the largest displacement, "cone" relative to the largest pressure, "equilibrium"
-        relative to the sum of the sizes of all terms.
+    ((float, float, float, float), float, float)
+        Largest violations of the conditions: "gap" and "slip" relative to the largest displacement, "cone" relative to
+        the largest pressure, "equilibrium" relative to the sum of the sizes of all terms. Then the largest difference
+        between what an interface passes on and what acts, relative to the sum of the resultants of the absolute
+        tractions. Then the elastic energy, without that of a drive.
     """
-    n, closed = values.status.size, False
-    gap, slip, cone = 0.0, 0.0, 0.0
+    n, closed, gap, slip, cone, energy, left, most = values.status.size, False, 0.0, 0.0, 0.0, 0.0, 0.0, SMALLEST
+    loaded, work, forces = np.empty(2 * n), np.empty(2 * n), np.empty(values.motion.size)
+    of_load(loading.columns, load, loaded)
+    of_load(loading.work, load, work)
+    of_load(loading.forces, load, forces)
     for i in range(n):
         opened = _displaced(equations, i, values.motion, elastic, loaded) + rest_gap[i]
         pressure, shear, status = values.pressure[i], values.shear[i], values.status[i]
+        energy += pressure * (0.5 * weights[i] * elastic[i] + work[i])
+        energy += shear * (0.5 * weights[i] * elastic[n + i] + work[n + i])
         if status == OPEN:
             if not opened >= 0.0:
                 gap = _larger(gap, opened)
@@ -105,11 +137,18 @@ def residuals(equations, values, elastic, loaded, forces, rest_gap, concentric_g
     for k in range(values.motion.size):
         lacks, size = _balance(equations, values, forces, k)
         lacking, total = _larger(lacking, lacks), total + size
+    for row in range(resultants.shape[0]):
+        passed, size = _carried(resultants, values, row)
+        most += size
+        if is_held and row == 2:
+            moment = passed
+        left = _larger(left, passed - (moment if row % 3 == 2 else force[row % 3]))
     length = max(_largest(elastic), _largest(values.motion), SMALLEST)
     if not closed:
         length, total = max(length, _largest(concentric_gap)), max(total, _largest(forces))
     traction = max(_largest(values.pressure), SMALLEST)
-    return gap / length, slip / length, cone / traction, lacking / max(total, SMALLEST)
+    residuals = gap / length, slip / length, cone / traction, lacking / max(total, SMALLEST)
+    return residuals, left / most, energy
 
 
 @compiled
@@ -132,7 +171,7 @@ def imbalance(equations, values, elastic, loaded, forces, rest_gap, true, missin
     Parameters
     ----------
     equations, values, elastic, loaded, forces, rest_gap
-        See :func:`residuals`. The slip of `values` is the one that sticking nodes hold.
+        See :func:`review`. The slip of `values` is the one that sticking nodes hold.
     true : ndarray, shape (2n,)
         Is set to gap and slip from the matrices.
     missing : ndarray, shape (2n+m,)
@@ -270,7 +309,7 @@ def _multiply(operator, values, elastic):
 
 
 @compiled
-def correct_held(tableau, updates, operator, equations, contact, sides, corrected):
+def correct_held(tableau, updates, operator, equations, contact, loaded, forces, rest_gap, corrected):
     """Correct a held contact until statuses, held slip and load hold to rounding, and put it on its bounds.
 
     Parameters
@@ -282,7 +321,11 @@ def correct_held(tableau, updates, operator, equations, contact, sides, correcte
     equations : Equations
     contact : Contact
         It is not changed.
-    sides : RightSides
+    loaded : ndarray, shape (2n,)
+        Gap and slip of the load.
+    forces : ndarray, shape (m,)
+        Right sides of the conditions of equilibrium.
+    rest_gap : ndarray, shape (n,)
     corrected : ContactValues
         All its arrays are set: to the corrected values within their bounds, see :func:`put_on_bounds`.
 
@@ -304,7 +347,7 @@ def correct_held(tableau, updates, operator, equations, contact, sides, correcte
     before, last = 0.0, np.inf
     while True:
         _multiply(operator, held, elastic)
-        error = imbalance(equations, held, elastic, sides.loaded, sides.forces, sides.rest_gap, true, missing)
+        error = imbalance(equations, held, elastic, loaded, forces, rest_gap, true, missing)
         if last == np.inf:
             before = drift(elastic, true, contact.gap, contact.slip, contact.motion, _largest(contact.gap))
         if error <= ROUNDING or not error < 0.5 * last:

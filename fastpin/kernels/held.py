@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.kernels.conditions import correct_held
+from fastpin.kernels.conditions import correct_held, of_load
 from fastpin.kernels.exchange import EXCHANGES, QUEUED, REACHED, UPDATES, follow
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.jit import compiled
@@ -76,8 +76,8 @@ def begin(table, stack, contact, friction, displaced, forces, tableau):
 
 @compiled
 def step(
-    begins, stack, operator, equations, displaced, forces, sides, contact, tableau, load, queue, fixed, typical, stop,
-    most_events, all_at_once, corrected,
+    begins, stack, operator, equations, loading, fixed, typical, before, rate, now, rest_gap, contact, tableau, load,
+    queue, stop, most_events, all_at_once, corrected,
 ):  # fmt: skip
     """Follow the load from sums[TIME] to `stop`, and correct the contact there.
 
@@ -89,12 +89,14 @@ def step(
         See ``HeldTable``.
     operator : ndarray, shape (2n, 2n), column by column
     equations : Equations
-    displaced, forces : ndarray, shape (2n,), (m,)
-        Gap and slip, and the right sides of equilibrium, by the rate of the load.
-    sides : RightSides
-        Those of the load at `stop`.
-    contact, tableau, load, queue, fixed, typical, stop, most_events, all_at_once
+    loading : Loading
+    before, rate, now : ndarray, shape (loads,)
+        The load at the start of the step, its change along the step, and the load at `stop`.
+    rest_gap : ndarray, shape (n,)
+    fixed, typical, contact, tableau, queue, stop, most_events, all_at_once
         See :func:`fastpin.kernels.exchange.follow`.
+    load : LoadTerms
+        Its columns and forces are set.
     corrected : ContactValues
         Is set to the corrected contact if `stop` is reached.
 
@@ -104,9 +106,16 @@ def step(
         The code of :func:`fastpin.kernels.exchange.follow`; whether the load has turned where the step begins, see
         :func:`begin`; and the errors at `stop`, see :func:`fastpin.kernels.conditions.correct_held`.
     """
-    n, counts, turned = contact.status.size, queue.counts, False
+    n, counts, turned, friction = contact.status.size, queue.counts, False, equations.friction
+    moved, forces = np.empty(2 * n), np.empty(contact.motion.size)
+    of_load(loading.work, before, load.column)
+    of_load(loading.work, rate, load.column_rate)
+    of_load(loading.forces, before, load.force)
+    of_load(loading.forces, rate, load.force_rate)
     if begins:
-        turned = begin(tableau.matrix, stack, contact, equations.friction, displaced, forces, tableau)
+        of_load(loading.columns, rate, moved)
+        of_load(loading.forces, rate, forces)
+        turned = begin(tableau.matrix, stack, contact, friction, moved, forces, tableau)
         for i in range(n):
             if contact.status[i] == OPEN or contact.status[i] == STICK:
                 continue
@@ -115,8 +124,12 @@ def step(
                 counts[QUEUED] += 1
                 counts[EXCHANGES] -= 1
             contact.status[i] = STICK
-    code = follow(tableau, contact, load, queue, equations.friction, fixed, typical, stop, most_events, all_at_once)
+    code = follow(tableau, contact, load, queue, friction, fixed, typical, stop, most_events, all_at_once)
     errors = (0.0, 0.0, 0.0, 0.0)
     if code == REACHED:
-        errors = correct_held(tableau, counts[UPDATES], operator, equations, contact, sides, corrected)
+        of_load(loading.columns, now, moved)
+        of_load(loading.forces, now, forces)
+        errors = correct_held(
+            tableau, counts[UPDATES], operator, equations, contact, moved, forces, rest_gap, corrected
+        )
     return code, turned, errors

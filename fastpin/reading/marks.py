@@ -85,12 +85,10 @@ class Marks:
         """The marks at nodes that stick by their status (n,) and have the same slip (n,) as before (n,)."""
         if not self._bits:
             return self
-        nodes = np.fromiter(self._bits, np.intp, len(self._bits))
-        stay = (status[nodes] == STICK) & (slip[nodes] == slip_before[nodes])
-        if stay.all():
+        stay = [k for k in self._bits if status.item(k) == STICK and slip.item(k) == slip_before.item(k)]
+        if len(stay) == len(self._bits):
             return self
-        bits = {node: self._bits[node] for node in nodes[stay].tolist()}
-        return Marks(bits, {node: place for node, place in self._places.items() if node in bits})
+        return Marks({k: self._bits[k] for k in stay}, {k: self._places[k] for k in stay if k in self._places})
 
     def at(self, nodes: np.ndarray) -> Marks:
         """The same marks where the nodes have other indices: `nodes` (n,)."""

@@ -87,7 +87,9 @@ class Configuration:
 
     def changed(self, **values: Any) -> Configuration:
         """A configuration with some other values. It shares all others with this one."""
-        return Configuration(**{**vars(self), **values})
+        new = object.__new__(Configuration)
+        vars(new).update(vars(self), **values)
+        return new
 
     def copy(self) -> Configuration:
         """A copy. It shares ``origin``, ``rest``, ``rest_gap`` and ``rest_slip``: nothing changes them in place."""
@@ -343,16 +345,44 @@ def slip_tally_between(before: Configuration, after: Configuration) -> SlipTally
     return tally
 
 
-def elastic_energy(system: System, configuration: Configuration, elastic: np.ndarray | None = None) -> float:
-    """Elastic energy of a configuration, up to a function of the load alone (dimensionless).
+class Review(NamedTuple):
+    """What a configuration violates, and the elastic energy in it.
 
-    `elastic` (2n,) is the elastic part of gap and slip, computed unless given.
+    Attributes
+    ----------
+    residuals : dict of str to float
+        Largest relative violation of each contact condition: "gap" and "slip", relative to the largest displacement;
+        "cone" (Coulomb's law and N >= 0), relative to the largest pressure; "equilibrium", relative to the sum of the
+        resultants of the absolute tractions.
+    imbalance : float
+        The largest force or moment that the tractions leave on a body: on the pin, on a bush, on the plate. It is
+        recomputed from the tractions, without the conditions of equilibrium of the solver, and relative to the sum of
+        the resultants of the absolute tractions. Every interface must pass on the force on the pin, and the same
+        moment: that of a free pin is M.
+    energy : float
+        Elastic energy, up to a function of the load alone (dimensionless).
     """
-    tractions = configuration.tractions
-    elastic = system.elastic(tractions) if elastic is None else elastic
-    weights = system.both_weights
-    energy = float(np.sum(weights * tractions * (0.5 * elastic + system.held_displacement(configuration.load))))
-    return energy + system.drive.energy(weights, tractions, configuration.motion)
+
+    residuals: dict[str, float]
+    imbalance: float
+    energy: float
+
+
+def review(system: System, configuration: Configuration) -> Review:
+    """Recompute from the matrices what a configuration violates, and its elastic energy."""
+    load, motion, tractions, drive = configuration.load, configuration.motion, configuration.tractions, system.drive
+    residuals, imbalance, energy = conditions.review(
+        system.equations, system.loading, system.resultants, system.weights, configuration.values,
+        system.elastic(tractions), load, configuration.rest_gap, system.concentric_gap,
+        drive.force(motion, load), load.item(M), system.problem.held,
+    )  # fmt: skip
+    named = dict(zip(("gap", "slip", "cone", "equilibrium"), residuals, strict=True))
+    return Review(named, imbalance, energy + drive.energy(system.both_weights, tractions, motion))
+
+
+def elastic_energy(system: System, configuration: Configuration) -> float:
+    """Elastic energy of a configuration, up to a function of the load alone (dimensionless)."""
+    return review(system, configuration).energy
 
 
 def thermal_energy(system: System, configuration: Configuration) -> float:
@@ -361,11 +391,10 @@ def thermal_energy(system: System, configuration: Configuration) -> float:
     Both count every load times its displacement. A body that expands freely stores nothing, so users see both less it.
     The stress of a body whose expansion is hindered does no work with that of the tractions, so the same holds for it.
     """
-    load = configuration.load[list(THERMAL)]
-    if not load.any():
+    if not any(configuration.load.item(place) for place in THERMAL):
         return 0.0
     n = system.grid.size
-    moved = system.drive.columns[:, list(THERMAL)] @ load
+    moved = system.drive.columns[:, list(THERMAL)] @ configuration.load[list(THERMAL)]
     of_shear = float((system.weights * configuration.tractions[n:]) @ moved[n:])
     return float((system.weights * configuration.pressure) @ moved[:n]) + of_shear
 
@@ -398,24 +427,8 @@ def marked(system: System, before: Configuration, now: Configuration) -> Configu
 
 
 def worst_residual(system: System, configuration: Configuration) -> float:
-    """The largest of the residuals of :func:`contact_residuals`; NaN if one is NaN."""
-    found = contact_residuals(system, configuration, system.elastic(configuration.tractions))
-    return float(np.maximum.reduce([*found.values()]))
-
-
-def unbalanced(system: System, configuration: Configuration) -> float:
-    """The largest force or moment that the tractions leave on a body: on the pin, on a bush, on the plate.
-
-    It is recomputed from the tractions, without the conditions of equilibrium of the solver, and relative to the sum of
-    the resultants of the absolute tractions. Every interface must pass on the force on the pin, and the same moment:
-    that of a free pin is M.
-    """
-    tractions = configuration.tractions
-    passed = (system.resultants @ tractions).reshape(-1, 3)
-    moment = passed[0, 2] if system.problem.held else configuration.load[M]
-    left = np.abs(passed - [*system.drive.force(configuration.motion, configuration.load), moment])
-    most = float((system.resultant_sizes @ np.abs(tractions)).sum())
-    return float(left.max() / max(most, conditions.SMALLEST))
+    """The largest of the residuals of :func:`review`; NaN if one is NaN."""
+    return float(np.maximum.reduce([*review(system, configuration).residuals.values()]))
 
 
 def moment_that_holds(system: System, configuration: Configuration) -> float:
@@ -424,22 +437,3 @@ def moment_that_holds(system: System, configuration: Configuration) -> float:
     levers, shear = system.levers[nodes], configuration.shear[nodes]
     moment = -float(levers @ shear)
     return moment if abs(moment) > ROUNDED * float(levers @ np.abs(shear)) else 0.0
-
-
-def contact_residuals(system: System, configuration: Configuration, elastic: np.ndarray) -> dict[str, float]:
-    """Largest relative violation of each contact condition, recomputed from the matrices.
-
-    `elastic` (2n,) is the elastic part of gap and slip.
-
-    Returns
-    -------
-    dict of str to float
-        "gap" and "slip", relative to the largest displacement; "cone" (Coulomb's law and N >= 0), relative to the
-        largest pressure; "equilibrium", relative to the sum of the resultants of the absolute tractions.
-    """
-    load = configuration.load
-    found = conditions.residuals(
-        system.equations, configuration.values, elastic, system.load_displacement(load),
-        system.load_forces(load), configuration.rest_gap, system.concentric_gap,
-    )  # fmt: skip
-    return dict(zip(("gap", "slip", "cone", "equilibrium"), found, strict=True))

@@ -16,7 +16,7 @@ import numpy as np
 from fastpin.elasticity.system import System
 from fastpin.kernels import held
 from fastpin.kernels import held_table as held_table_kernels
-from fastpin.kernels.arrays import Contact, ContactValues, LoadTerms, Queue, RightSides, Tableau
+from fastpin.kernels.arrays import Contact, ContactValues, LoadTerms, Queue
 from fastpin.kernels.exchange import EVENTS, NEXT, QUEUED, REACHED, REBUILD, ROUND, UPDATES, WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
@@ -195,35 +195,18 @@ class HeldColumns:
     """
 
     def __init__(
-        self,
-        system: System,
-        table: HeldTable,
-        contact: Contact,
-        before: np.ndarray,
-        load_rate: np.ndarray,
-        rest_gap: np.ndarray,
-        memory: TableauMemory,
-    ) -> None:
-        n, updates = system.grid.size, memory.left.shape[1]
+        self, system: System, table: HeldTable, contact: Contact, before: np.ndarray, load_rate: np.ndarray,
+        rest_gap: np.ndarray, memory: TableauMemory,
+    ) -> None:  # fmt: skip
+        n = system.grid.size
         self._system, self._memory, self._contact, self._rest_gap = system, memory, contact, rest_gap
         self._before, self._rate = before, load_rate
-        self._displaced, self._forces = system.load_displacement(load_rate), system.load_forces(load_rate)
         self._has_begun = self.turned = False
         if memory.held is None:
-            memory.held = Tableau(
-                matrix=memory.matrix,
-                order=table.order,
-                fresh=np.zeros(-(-2 * n // WIDTH), dtype=np.int64),
-                left=memory.left,
-                source=np.empty(updates, dtype=np.int64),
-                slot=np.empty(updates, dtype=np.int64),
-                delta=np.empty(updates),
-                rates=np.empty(table.order.size),
-                tied=np.empty(n),
-                drag=np.empty(n),
-                chunk=updates + 1,
-                width=WIDTH,
-            )
+            memory.held = memory.blank._replace(
+                order=table.order, fresh=np.zeros(-(-2 * n // WIDTH), dtype=np.int64), rates=np.empty(table.order.size),
+                tied=np.empty(n), drag=np.empty(n), chunk=memory.left.shape[1] + 1,
+            )  # fmt: skip
         self.tableau = memory.held
         self._begin(table, 0)
 
@@ -233,27 +216,24 @@ class HeldColumns:
         The first call begins the step: it sets the ties in the contact, and lets go the nodes that go on slipping.
         After many updates the nodes that are closed then are held, and the step goes on from there.
         """
-        system, contact, now = self._system, self._contact, self._before + stop * self._rate
-        sides = RightSides(system.load_displacement(now), system.load_forces(now), self._rest_gap)
-        pressure, shear, gap, slip = np.empty((4, contact.status.size))
-        self._corrected = ContactValues(pressure, shear, gap, slip, contact.status.copy(), contact.motion.copy())
+        system, contact, status = self._system, self._contact, self._contact.status
+        self._corrected = ContactValues(*np.empty((4, status.size)), status.copy(), contact.motion.copy())
         before: np.ndarray | None = None
         while True:
             code, turned, self._errors = held.step(
-                not self._has_begun, self._table.stack, system.operator.matrix, system.equations, self._displaced,
-                self._forces, sides, contact, self.tableau, load, queue, system.fixed, system.operator.typical, stop,
-                most_events, all_at_once, self._corrected,
+                not self._has_begun, self._table.stack, system.operator.matrix, system.equations, system.loading,
+                system.fixed, system.operator.typical, self._before, self._rate, self._before + stop * self._rate,
+                self._rest_gap, contact, self.tableau, load, queue, stop, most_events, all_at_once, self._corrected,
             )  # fmt: skip
             self.turned, self._has_begun, events = self.turned or turned, True, int(queue.counts[EVENTS])
             is_stuck = events == self._events
             if before is not None and is_stuck and code != REACHED:  # the slipping nodes can't be let go one by one
                 contact.status[:], code = before, REBUILD
                 queue.counts[[QUEUED, NEXT, ROUND]] = 0
-            if code != REBUILD or is_stuck:
-                return int(code)
-            table, before = known_table(system, contact.status != OPEN), contact.status.copy()
+            table = None if code != REBUILD or is_stuck else known_table(system, contact.status != OPEN)
             if table is None:
                 return int(code)
+            before = contact.status.copy()
             queue.counts[[UPDATES, QUEUED, NEXT, ROUND]] = 0
             self._begin(table, events)
 
@@ -269,3 +249,10 @@ class HeldColumns:
         error, drift, *beyond = self._errors
         values = {**self._corrected._asdict(), "load": now.load.copy(), "slip_tally": now.slip_tally.copy()}
         return Correction(now.changed(**values), error, drift, (beyond[0], beyond[1]))
+
+
+def blank_terms(system: System, rate: np.ndarray) -> LoadTerms:
+    """The terms of the work along a straight change `rate` (loads,) of the load. Its columns and forces are not set."""
+    (column, column_rate), (force, force_rate) = np.empty((2, 2 * system.grid.size)), np.empty((2, 2))
+    reactions = system.drive.reaction_terms(system.both_weights, rate)
+    return LoadTerms(column, column_rate, force, force_rate, system.weights, system.levers, system.stops, reactions)

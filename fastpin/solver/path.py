@@ -21,7 +21,7 @@ from fastpin.kernels.arrays import Contact, ContactValues, LoadTerms, Queue
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import P, Q
 from fastpin.solver.configuration import Configuration, Correction, snap_to_bounds, solve_unknowns
-from fastpin.solver.held import FEW_NODES, HeldColumns, known_table
+from fastpin.solver.held import FEW_NODES, HeldColumns, blank_terms, known_table
 from fastpin.solver.settling import settle
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
 from fastpin.solver.unknowns import StickingRun
@@ -201,9 +201,7 @@ class PathStep:
     def _book(self) -> None:
         """Write load, work and dissipation into the present configuration."""
         self.now.load = self.before + self.fraction * self.rate
-        self.now.dissipation = float(self._queue.sums[exchange.DISSIPATION])
-        self.now.work = float(self._queue.sums[exchange.WORK])
-        self.now.seat_dissipation = float(self._queue.sums[exchange.SEAT_DISSIPATION])
+        _, self.now.dissipation, self.now.work, self.now.seat_dissipation = self._queue.sums.tolist()
 
     def _sticking_after_reversal(self) -> StickingRun | None:
         """The system with all closed nodes sticking, if the load has turned. Then most slipping nodes stick at once.
@@ -412,7 +410,7 @@ def follow_whole(system: System, start: Configuration, after: np.ndarray, memory
     now, rate = start.copy(), after - start.load
     contact, queue = _arrays_of(now)
     columns = HeldColumns(system, table, contact, start.load, rate, start.rest_gap, memory)
-    code = columns.follow(load_terms(system, start.load, rate), queue, 1.0, MOST_EVENTS * n, n)
+    code = columns.follow(blank_terms(system, rate), queue, 1.0, MOST_EVENTS * n, n)
     if code != exchange.REACHED:
         return None
     now.load = after
@@ -438,17 +436,10 @@ def _arrays_of(now: Configuration) -> tuple[Contact, Queue]:
 
 def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:
     """The terms of the work of the loads along a straight piece, from its first load and its rate, shape (loads,)."""
-    weights = system.both_weights
-    return LoadTerms(
-        column=weights * system.held_displacement(before),
-        column_rate=weights * system.held_displacement(rate),
-        force=np.array([before[Q], -before[P]]),
-        force_rate=np.array([rate[Q], -rate[P]]),
-        weights=system.weights,
-        levers=system.levers,
-        stops=system.stops,
-        reactions=system.drive.reaction_terms(weights, rate),
-    )
+    terms, weights = blank_terms(system, rate), system.both_weights
+    terms.column[:], terms.column_rate[:] = (weights * system.held_displacement(load) for load in (before, rate))
+    terms.force[:], terms.force_rate[:] = (before[Q], -before[P]), (rate[Q], -rate[P])
+    return terms
 
 
 def exceeds_bounds(correction: Correction, last: bool = False) -> bool:

@@ -24,14 +24,13 @@ from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     SLIGHT,
     Configuration,
-    contact_residuals,
-    elastic_energy,
+    Review,
     marked,
     marks_left,
     moment_that_holds,
+    review,
     slip_tally_with,
     thermal_energy,
-    unbalanced,
 )
 from fastpin.solver.errors import ArcError, ConvergenceError, SolveError
 from fastpin.solver.first_contact import first_contact
@@ -312,14 +311,14 @@ class Run:
             # In the last part of a piece the contact of a nearly neat fit vanishes: its tractions are rounding there.
             until = max(stop - 1e-7 * (piece.end - piece.begin), position.reached) if vanishes else stop
             aim = piece.load_at(until) if vanishes else load
-            while (position.now.load != aim).any():
+            while position.now.load.tolist() != aim.tolist():
                 if position.now.closed[pin].any():
                     self.stepper.advance(position, piece, until, self.report)
                 else:
                     self._touch_down(aim, until)
                 check_bond(self.system, position.now)
             position.reached = stop
-            if vanishes and (position.now.load != load).any():
+            if vanishes and position.now.load.tolist() != load.tolist():
                 self._release(load)
             if not is_pushed(load) and position.now.closed[pin].any():  # after a complete unloading
                 left, before = float(position.now.pressure[pin].max()), force_of(piece.before)
@@ -438,23 +437,21 @@ class Run:
     def _keep(self, step: int, fraction: float) -> None:
         """Check the present configuration and hand it to the recorder as a state."""
         system, now = self.system, self.now
-        elastic = system.elastic(now.tractions)
-        residuals = contact_residuals(system.under(now.load), now, elastic)
-        left = unbalanced(system, now)
+        residuals, left, _ = found = review(system.under(now.load), now)
         if not left <= MAX_RESIDUAL:
             raise ConvergenceError(f"the state leaves a body out of equilibrium (by {left:.2g}) and is not returned")
-        if not np.maximum.reduce([*residuals.values()]) <= MAX_RESIDUAL:
+        if not all(residual <= MAX_RESIDUAL for residual in residuals.values()):
             worst = max(residuals, key=lambda name: residuals[name])
             raise ConvergenceError(
                 f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
             )
         self.corner_log.latest.kept.append((now.dissipation, now.work))
         assert self.recorder is not None
-        self.recorder.add(self._state(step, fraction, residuals, elastic))
+        self.recorder.add(self._state(step, fraction, found))
         self.slip_tally.keep(now.slip_tally)
 
-    def _state(self, step: int, fraction: float, residuals: dict[str, float], elastic: np.ndarray) -> State:
-        """The present configuration, with its `elastic` gap and slip (2n,), as a state, SI; with the seat of a bush."""
+    def _state(self, step: int, fraction: float, found: Review) -> State:
+        """The present configuration, with its review, as a state, SI; with the seat of a bush."""
         system, now = self.system, self.now
         drive, way = system.drive, now.rest - now.origin
         way[np.isnan(way)] = 0.0
@@ -473,8 +470,8 @@ class Run:
             "fraction": fraction,
             "load": named_load(acting),
             "work": (self.work + now.work - heat) * system.scales.energy,
-            "energy": (elastic_energy(system, now, elastic) - heat) * system.scales.energy,
-            "residuals": residuals,
+            "energy": (found.energy - heat) * system.scales.energy,
+            "residuals": found.residuals,
         }
         inner = None  # the state of the seat, then that of the pin
         for place in reversed(range(len(system.interfaces))):

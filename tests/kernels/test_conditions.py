@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import conditions
-from fastpin.kernels.arrays import ContactValues, Equations
+from fastpin.kernels.arrays import ContactValues, Equations, Loading
 from fastpin.kernels.status import OPEN, STICK
 from tests.support.tiers import seeds
 
@@ -29,7 +29,11 @@ class Drawn:
         self.equations = Equations(
             rng.normal(size=(2 * n, m)), rng.normal(size=(m, 2 * n)), rng.normal(size=(m, m)), self.friction
         )
-        self.elastic, self.loaded, self.forces = rng.normal(size=2 * n), rng.normal(size=2 * n), rng.normal(size=m)
+        self.loading = Loading(*(rng.normal(size=(rows, 4)) for rows in (2 * n, 2 * n, m)))
+        self.elastic, self.load = rng.normal(size=2 * n), rng.normal(size=5)  # a longer load vector
+        self.loaded, self.work, self.forces = (columns @ self.load[:4] for columns in self.loading)
+        self.resultants, self.weights = rng.normal(size=(6, 2 * n)), rng.uniform(0.5, 1.0, n)
+        self.force, self.moment = rng.normal(size=2), float(rng.normal())
         self.rest_gap, self.concentric_gap = rng.normal(size=n), rng.uniform(5.0, 6.0, n)
 
     @property
@@ -50,10 +54,14 @@ class Drawn:
     def sizes(self):
         return np.abs(self.equations.equilibrium) @ np.abs(self.tractions)
 
+    def review(self, is_held=False):
+        return conditions.review(
+            self.equations, self.loading, self.resultants, self.weights, self.values, self.elastic, self.load,
+            self.rest_gap, self.concentric_gap, self.force, self.moment, is_held,
+        )  # fmt: skip
+
     def residuals(self):
-        return conditions.residuals(
-            self.equations, self.values, self.elastic, self.loaded, self.forces, self.rest_gap, self.concentric_gap
-        )
+        return self.review()[0]
 
 
 def test_residuals():
@@ -82,6 +90,20 @@ def test_residuals_without_contact_are_in_parts_of_the_gap():
     length = max(np.abs(drawn.elastic).max(), np.abs(drawn.values.motion).max(), drawn.concentric_gap.max())
     assert found[0] == pytest.approx(max(-drawn.true[:NODES].min(), 0.0) / length, rel=1e-12)
     assert found[1] == 0.0
+
+
+@pytest.mark.parametrize("is_held", [False, True])
+def test_equilibrium_and_energy(is_held):
+    """The resultants of two interfaces against the force and the moment, and the elastic energy."""
+    for seed in seeds(6):
+        drawn = Drawn(seed)
+        _, imbalance, energy = drawn.review(is_held)
+        passed = drawn.resultants @ drawn.tractions
+        moment = passed[2] if is_held else drawn.moment
+        left = np.abs(passed.reshape(2, 3) - [*drawn.force, moment]).max()
+        assert imbalance == pytest.approx(left / (np.abs(drawn.resultants) @ np.abs(drawn.tractions)).sum(), rel=1e-12)
+        half = 0.5 * np.r_[drawn.weights, drawn.weights] * drawn.elastic
+        assert energy == pytest.approx(drawn.tractions @ (half + drawn.work), rel=1e-11, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", ["pressure", "shear", "slip", "motion"])

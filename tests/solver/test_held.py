@@ -10,7 +10,7 @@ from fastpin import Grid, Problem, SolveError, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels import conditions, exchange
 from fastpin.kernels import held as held_kernels
-from fastpin.kernels.arrays import Contact, RightSides
+from fastpin.kernels.arrays import Contact
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model import LOADS
 from fastpin.solver import held
@@ -155,13 +155,13 @@ def test_corrections_of_a_held_contact_are_those_of_whole_arrays(titanium_in_alu
     contact = contact_of(closed)._replace(**now.values._asdict())
     columns = begun(system, held_table(system, closed), contact, TableauMemory(system))
     wanted = Columns(system, DenseUnknowns(system, now.status), contact, rate(), TableauMemory(system)).correct(now)
-    sides = RightSides(system.load_displacement(now.load), system.load_forces(now.load), now.rest_gap)
+    sides = system.load_displacement(now.load), system.load_forces(now.load), now.rest_gap
     settled = now.copy()
     for name in ("pressure", "shear", "gap", "slip", "status", "motion"):
         getattr(settled, name)[:] = 7
     operator = np.asfortranarray(np.asarray(system.operator))
     error, drift, *beyond = conditions.correct_held(
-        columns.tableau, 0, operator, system.equations, contact, sides, settled.values
+        columns.tableau, 0, operator, system.equations, contact, *sides, settled.values
     )
     assert error < 1e-14
     assert drift == pytest.approx(wanted.drift, rel=1e-6)
