@@ -444,7 +444,7 @@ def _young_nodes(system: System, patch: Configuration) -> np.ndarray | None:
     n, first = system.grid.size, int(np.argmax(patch.pressure))
     nodes = first + np.arange(-GROWN_NODES, GROWN_NODES + 1)
     nodes = nodes % n if system.grid.closed else nodes[(nodes >= 0) & (nodes < n)]
-    whole = system.drive.has_displacements or n <= 3 * GROWN_NODES
+    whole = system.drive.has_displacements or n <= 8 * GROWN_NODES  # below, another table takes longer
     return None if whole or patch.closed[nodes].sum() != patch.closed.sum() else nodes
 
 

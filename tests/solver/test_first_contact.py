@@ -172,7 +172,7 @@ def young_patch(pair, before, after):
     return system, patch
 
 
-@pytest.mark.parametrize(("before", "after"), [(10, 50), (30, 30), (50, 10)])
+@pytest.mark.parametrize(("before", "after"), [(10, 150), (80, 80), (150, 10)])
 def test_a_young_contact_is_followed_on_few_nodes(titanium_in_aluminium, before, after):
     system, patch = young_patch(titanium_in_aluminium, before, after)
     around = np.arange(before - first_contact.GROWN_NODES, before + first_contact.GROWN_NODES + 1)
