@@ -217,7 +217,7 @@ class HeldColumns:
         After many updates the nodes that are closed then are held, and the step goes on from there.
         """
         system, contact, status = self._system, self._contact, self._contact.status
-        self._corrected = ContactValues(*np.empty((4, status.size)), status.copy(), contact.motion.copy())
+        self._corrected = ContactValues._make([*np.empty((4, status.size)), status.copy(), contact.motion.copy()])
         before: np.ndarray | None = None
         while True:
             code, turned, self._errors = held.step(
