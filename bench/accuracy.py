@@ -32,7 +32,7 @@ from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import ALL_ROUND
 from fastpin.model.problem import Problem
 from fastpin.published.records import add_legend, panels, save_drawing
-from fastpin.solver.configuration import elastic_energy
+from fastpin.solver.configuration import review
 from fastpin.solver.errors import SolveError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.result import Result
@@ -328,8 +328,8 @@ def path(options: Options) -> None:
         yield nodes
         for softness in (None, 0.2 * np.ones(nodes)):
             run, depth = ready_to_wear(nodes)
-            energy, removal = elastic_energy(run.system, run.now), run.wear(depth, softness)
-            grown = elastic_energy(run.system, run.now) - energy
+            energy, removal = review(run.system, run.now).energy, run.wear(depth, softness)
+            grown = review(run.system, run.now).energy - energy
             yield removal.work - grown - removal.dissipation - removal.energy
 
     show("The wear path", "increments of the gap | N | T", map(by_increments, (10, 40, 160, 640)))

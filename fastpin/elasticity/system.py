@@ -24,7 +24,7 @@ import numpy as np
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, make_drive
 from fastpin.elasticity.operator import DenseOperator, Operator, make_operator, uniform_part
 from fastpin.elasticity.terms import BodyTerms, body_terms, thermal_columns
-from fastpin.kernels.arrays import Equations, Loading
+from fastpin.kernels.arrays import Equations
 from fastpin.model.grid import Grid, arc_of
 from fastpin.model.loads import ACTING, FRICTION_CHANGE, LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, TEMPERATURE, M, P, Q
 from fastpin.model.problem import Problem
@@ -222,14 +222,9 @@ class System:
     @cached_property
     def equations(self) -> Equations:
         """The arrays of the equations for kernels, all in the order of C."""
-        matrices = map(np.ascontiguousarray, (self.motion, self.equilibrium, self.motion_rows, self.friction))
-        return Equations(*matrices)
-
-    @cached_property
-    def loading(self) -> Loading:
-        """The arrays of the loads for kernels, all in the order of C."""
-        work = self.both_weights[:, None] * self.drive.columns
-        return Loading(*map(np.ascontiguousarray, (self.loads, work, self.forces)))
+        loads = self.loads, self.both_weights[:, None] * self.drive.columns, self.forces
+        matrices = self.motion, self.equilibrium, self.motion_rows, self.friction, *loads
+        return Equations(*map(np.ascontiguousarray, matrices))
 
     @cached_property
     def held_tables(self) -> OrderedDict[bytes, Any]:

@@ -94,28 +94,19 @@ class Equations(NamedTuple):
         Maps the motion to the conditions of equilibrium.
     friction : ndarray, shape (n,)
         Coefficient of friction at each node.
-    """
-
-    motion: np.ndarray
-    equilibrium: np.ndarray
-    motion_rows: np.ndarray
-    friction: np.ndarray
-
-
-class Loading(NamedTuple):
-    """What loads do. A load vector may be longer: its further loads do nothing here.
-
-    Attributes
-    ----------
-    columns : ndarray, shape (2n, loads)
-        Maps the loads to gap and slip.
+    loads : ndarray, shape (2n, loads)
+        Maps the loads to gap and slip. A load vector may be longer: its further loads do nothing here.
     work : ndarray, shape (2n, loads)
         Maps the loads to gap and slip without the prescribed displacements, times the weights of the nodes.
     forces : ndarray, shape (m, loads)
         Maps the loads to the right sides of equilibrium.
     """
 
-    columns: np.ndarray
+    motion: np.ndarray
+    equilibrium: np.ndarray
+    motion_rows: np.ndarray
+    friction: np.ndarray
+    loads: np.ndarray
     work: np.ndarray
     forces: np.ndarray
 

@@ -77,14 +77,13 @@ def _balance(equations, values, forces, k):
 
 @compiled
 def review(
-    equations, loading, resultants, weights, values, elastic, load, rest_gap, concentric_gap, force, moment, is_held,
+    equations, resultants, weights, values, elastic, load, rest_gap, concentric_gap, force, moment, is_held,
 ):  # fmt: skip
     """The violations of the contact conditions, what is out of equilibrium, and the elastic energy.
 
     Parameters
     ----------
     equations : Equations
-    loading : Loading
     resultants : ndarray, shape (3 interfaces, 2n)
         Maps (N, T) to the forces along x and y and the moment that each interface passes on.
     weights : ndarray, shape (n,)
@@ -110,9 +109,9 @@ def review(
     """
     n, closed, gap, slip, cone, energy, left, most = values.status.size, False, 0.0, 0.0, 0.0, 0.0, 0.0, SMALLEST
     loaded, work, forces = np.empty(2 * n), np.empty(2 * n), np.empty(values.motion.size)
-    of_load(loading.columns, load, loaded)
-    of_load(loading.work, load, work)
-    of_load(loading.forces, load, forces)
+    of_load(equations.loads, load, loaded)
+    of_load(equations.work, load, work)
+    of_load(equations.forces, load, forces)
     for i in range(n):
         opened = _displaced(equations, i, values.motion, elastic, loaded) + rest_gap[i]
         pressure, shear, status = values.pressure[i], values.shear[i], values.status[i]

@@ -76,7 +76,7 @@ def begin(table, stack, contact, friction, displaced, forces, tableau):
 
 @compiled
 def step(
-    begins, stack, operator, equations, loading, fixed, typical, before, rate, now, rest_gap, contact, tableau, load,
+    begins, stack, operator, equations, fixed, typical, before, rate, now, rest_gap, contact, tableau, load,
     queue, stop, most_events, all_at_once, corrected,
 ):  # fmt: skip
     """Follow the load from sums[TIME] to `stop`, and correct the contact there.
@@ -89,7 +89,6 @@ def step(
         See ``HeldTable``.
     operator : ndarray, shape (2n, 2n), column by column
     equations : Equations
-    loading : Loading
     before, rate, now : ndarray, shape (loads,)
         The load at the start of the step, its change along the step, and the load at `stop`.
     rest_gap : ndarray, shape (n,)
@@ -108,13 +107,13 @@ def step(
     """
     n, counts, turned, friction = contact.status.size, queue.counts, False, equations.friction
     moved, forces = np.empty(2 * n), np.empty(contact.motion.size)
-    of_load(loading.work, before, load.column)
-    of_load(loading.work, rate, load.column_rate)
-    of_load(loading.forces, before, load.force)
-    of_load(loading.forces, rate, load.force_rate)
+    of_load(equations.work, before, load.column)
+    of_load(equations.work, rate, load.column_rate)
+    of_load(equations.forces, before, load.force)
+    of_load(equations.forces, rate, load.force_rate)
     if begins:
-        of_load(loading.columns, rate, moved)
-        of_load(loading.forces, rate, forces)
+        of_load(equations.loads, rate, moved)
+        of_load(equations.forces, rate, forces)
         turned = begin(tableau.matrix, stack, contact, friction, moved, forces, tableau)
         for i in range(n):
             if contact.status[i] == OPEN or contact.status[i] == STICK:
@@ -127,8 +126,8 @@ def step(
     code = follow(tableau, contact, load, queue, friction, fixed, typical, stop, most_events, all_at_once)
     errors = (0.0, 0.0, 0.0, 0.0)
     if code == REACHED:
-        of_load(loading.columns, now, moved)
-        of_load(loading.forces, now, forces)
+        of_load(equations.loads, now, moved)
+        of_load(equations.forces, now, forces)
         errors = correct_held(
             tableau, counts[UPDATES], operator, equations, contact, moved, forces, rest_gap, corrected
         )

@@ -22,8 +22,8 @@ from fastpin.solver.configuration import (
     SLIGHT,
     Configuration,
     accept_solution,
-    elastic_energy,
     resting_status,
+    review,
     solve_statuses,
     worst_residual,
 )
@@ -80,7 +80,7 @@ def unloaded_configuration(system: System) -> Configuration:
             found = configuration.changed(pressure=solution.pressure)
     if found is None:
         raise ConvergenceError("the pressure of the interference fit was not found; use more nodes")
-    found.work = elastic_energy(system, found)  # the work of the assembly, without that of its friction
+    found.work = review(system, found).energy  # the work of the assembly, without that of its friction
     return found
 
 
@@ -99,7 +99,7 @@ def _assembled_joint(joint: JointSystem) -> Configuration:
     view = PinView(joint, whole)
     found = view.whole(unloaded_configuration(view.system))
     found.dissipation = found.seat_dissipation = 0.0
-    found.work = elastic_energy(joint, found)
+    found.work = review(joint, found).energy
     return found
 
 

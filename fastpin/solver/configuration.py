@@ -372,7 +372,7 @@ def review(system: System, configuration: Configuration) -> Review:
     """Recompute from the matrices what a configuration violates, and its elastic energy."""
     load, motion, tractions, drive = configuration.load, configuration.motion, configuration.tractions, system.drive
     residuals, imbalance, energy = conditions.review(
-        system.equations, system.loading, system.resultants, system.weights, configuration.values,
+        system.equations, system.resultants, system.weights, configuration.values,
         system.elastic(tractions), load, configuration.rest_gap, system.concentric_gap,
         drive.force(motion, load), load.item(M), system.problem.held,
     )  # fmt: skip
@@ -380,13 +380,8 @@ def review(system: System, configuration: Configuration) -> Review:
     return Review(named, imbalance, energy + drive.energy(system.both_weights, tractions, motion))
 
 
-def elastic_energy(system: System, configuration: Configuration) -> float:
-    """Elastic energy of a configuration, up to a function of the load alone (dimensionless)."""
-    return review(system, configuration).energy
-
-
 def thermal_energy(system: System, configuration: Configuration) -> float:
-    """What the temperatures add to work and :func:`elastic_energy`, dimensionless: tractions times their displacement.
+    """What the temperatures add to work and elastic energy, dimensionless: tractions times their displacement.
 
     Both count every load times its displacement. A body that expands freely stores nothing, so users see both less it.
     The stress of a body whose expansion is hindered does no work with that of the tractions, so the same holds for it.

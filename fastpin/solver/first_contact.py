@@ -23,9 +23,9 @@ from fastpin.solver.configuration import (
     Configuration,
     accept_solution,
     dissipation_between,
-    elastic_energy,
     reaches_end,
     resting_status,
+    review,
     seat_dissipation_between,
     slip_tally_between,
     slip_tally_with,
@@ -402,7 +402,7 @@ def _begun(
         found = _with_grown_slip(system, found, begin) or found
     found.dissipation += dissipated
     found.seat_dissipation += seat_dissipation_between(system, resting, found)
-    found.work += elastic_energy(system, found) + dissipated
+    found.work += review(system, found).energy + dissipated
     return found
 
 

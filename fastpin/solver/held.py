@@ -221,7 +221,7 @@ class HeldColumns:
         before: np.ndarray | None = None
         while True:
             code, turned, self._errors = held.step(
-                not self._has_begun, self._table.stack, system.operator.matrix, system.equations, system.loading,
+                not self._has_begun, self._table.stack, system.operator.matrix, system.equations,
                 system.fixed, system.operator.typical, self._before, self._rate, self._before + stop * self._rate,
                 self._rest_gap, contact, self.tableau, load, queue, stop, most_events, all_at_once, self._corrected,
             )  # fmt: skip

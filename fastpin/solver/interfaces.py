@@ -26,8 +26,8 @@ from fastpin.solver.configuration import (
     Configuration,
     accept_solution,
     add_dissipation,
-    elastic_energy,
     resting_status,
+    review,
     solve_statuses,
     worst_residual,
 )
@@ -157,7 +157,7 @@ class PinView:
             if pin.closed.sum() == 1:
                 raise ResolutionError(NARROW)
             raise ConvergenceError("the tractions between bush and plate were not found; use more nodes")
-        done = elastic_energy(joint, found) - elastic_energy(joint, now)
+        done = review(joint, found).energy - review(joint, now).energy
         found.work = now.work + done + found.dissipation - now.dissipation
         return found
 

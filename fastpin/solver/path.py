@@ -17,7 +17,7 @@ import numpy as np
 from fastpin.elasticity.operator import Operator
 from fastpin.elasticity.system import System
 from fastpin.kernels import conditions, exchange
-from fastpin.kernels.arrays import Contact, ContactValues, LoadTerms, Queue
+from fastpin.kernels.arrays import Contact, ContactValues, Queue
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import P, Q
 from fastpin.solver.configuration import Configuration, Correction, snap_to_bounds, solve_unknowns
@@ -96,7 +96,9 @@ class PathStep:
         self.rate = after - self.before
         n, now = system.grid.size, self.now
         self._contact, self._queue = _arrays_of(now)
-        self._load = load_terms(system, self.before, self.rate)
+        self._load = terms = blank_terms(system, self.rate)
+        for load, column, force in ((self.before, *terms[:4:2]), (self.rate, *terms[1:4:2])):
+            column[:], force[:] = system.both_weights * system.held_displacement(load), (load[Q], -load[P])
         self._all_at_once = max(32, n // 20)
         self._sample: slice | np.ndarray = slice(None)
         self._sampled: Operator | np.ndarray = system.operator
@@ -432,14 +434,6 @@ def _arrays_of(now: Configuration) -> tuple[Contact, Queue]:
     sums = np.array([0.0, now.dissipation, now.work, now.seat_dissipation])
     counts = np.zeros(exchange.COUNTS, dtype=np.int64)
     return contact, Queue(np.zeros(2 * n, dtype=np.int64), np.zeros(2 * n, dtype=np.int8), counts, sums)
-
-
-def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:
-    """The terms of the work of the loads along a straight piece, from its first load and its rate, shape (loads,)."""
-    terms, weights = blank_terms(system, rate), system.both_weights
-    terms.column[:], terms.column_rate[:] = (weights * system.held_displacement(load) for load in (before, rate))
-    terms.force[:], terms.force_rate[:] = (before[Q], -before[P]), (rate[Q], -rate[P])
-    return terms
 
 
 def exceeds_bounds(correction: Correction, last: bool = False) -> bool:

@@ -14,7 +14,7 @@ from fastpin.model.loads import ACTING, REMOTE, ROTATION, SXX, SXY, SYY, THERMAL
 from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.profile import widest_place
 from fastpin.runtime.extensions import optimize
-from fastpin.solver.configuration import SLIGHT, Configuration, elastic_energy
+from fastpin.solver.configuration import SLIGHT, Configuration, review
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.interfaces import PinView, part_of, with_part, without_force
 from fastpin.solver.path import PathStep, StepLostError
@@ -43,7 +43,7 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
         return _release_pin(system, last, load)
     n = system.grid.size
     new = last.copy()
-    new.work -= elastic_energy(system, last)  # the elastic energy that is left goes back to the loads
+    new.work -= review(system, last).energy  # the elastic energy that is left goes back to the loads
     new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
     new.load = load.copy()
     translation, given = system.drive.translation[:n], system.drive.prescribed(load)
@@ -76,7 +76,7 @@ def _release_pin(joint: JointSystem, last: Configuration, load: np.ndarray) -> C
     found = with_part(joint, with_part(joint, last, PIN, pin), SEAT, seat)
     return found.changed(
         dissipation=last.dissipation, seat_dissipation=last.seat_dissipation,
-        work=last.work - elastic_energy(joint, last),
+        work=last.work - review(joint, last).energy,
     )  # fmt: skip
 
 

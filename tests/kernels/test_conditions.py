@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import conditions
-from fastpin.kernels.arrays import ContactValues, Equations, Loading
+from fastpin.kernels.arrays import ContactValues, Equations
 from fastpin.kernels.status import OPEN, STICK
 from tests.support.tiers import seeds
 
@@ -27,11 +27,11 @@ class Drawn:
             pressure, shear, rng.normal(size=n), rng.normal(size=n), self.status, rng.normal(size=m)
         )
         self.equations = Equations(
-            rng.normal(size=(2 * n, m)), rng.normal(size=(m, 2 * n)), rng.normal(size=(m, m)), self.friction
-        )
-        self.loading = Loading(*(rng.normal(size=(rows, 4)) for rows in (2 * n, 2 * n, m)))
+            rng.normal(size=(2 * n, m)), rng.normal(size=(m, 2 * n)), rng.normal(size=(m, m)), self.friction,
+            *(rng.normal(size=(rows, 4)) for rows in (2 * n, 2 * n, m)),
+        )  # fmt: skip
         self.elastic, self.load = rng.normal(size=2 * n), rng.normal(size=5)  # a longer load vector
-        self.loaded, self.work, self.forces = (columns @ self.load[:4] for columns in self.loading)
+        self.loaded, self.work, self.forces = (columns @ self.load[:4] for columns in self.equations[4:])
         self.resultants, self.weights = rng.normal(size=(6, 2 * n)), rng.uniform(0.5, 1.0, n)
         self.force, self.moment = rng.normal(size=2), float(rng.normal())
         self.rest_gap, self.concentric_gap = rng.normal(size=n), rng.uniform(5.0, 6.0, n)
@@ -56,7 +56,7 @@ class Drawn:
 
     def review(self, is_held=False):
         return conditions.review(
-            self.equations, self.loading, self.resultants, self.weights, self.values, self.elastic, self.load,
+            self.equations, self.resultants, self.weights, self.values, self.elastic, self.load,
             self.rest_gap, self.concentric_gap, self.force, self.moment, is_held,
         )  # fmt: skip
 

@@ -54,7 +54,7 @@ def test_nodes_that_can_not_be_held_anew_keep_their_statuses(titanium_in_alumini
     plain = solve(problem, history, nodes=41)
 
     def lost(begins, *given):
-        status, counts = given[10].status, given[13].counts
+        status, counts = given[9].status, given[12].counts
         if not (begins and counts[exchange.EVENTS] > 0):
             return follow(begins, *given)
         status[status != OPEN] = STICK

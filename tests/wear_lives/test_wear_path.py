@@ -11,7 +11,7 @@ from fastpin.elasticity.system import System
 from fastpin.model import LOADS, Profile
 from fastpin.model.profile_terms import Zone
 from fastpin.solver import first_contact
-from fastpin.solver.configuration import elastic_energy, worst_residual
+from fastpin.solver.configuration import review, worst_residual
 from fastpin.solver.increment import implicit_step
 from fastpin.verification.joint_rows import step, wearing
 from fastpin.wear_lives.wear_path import SoftOperator, system_with_wear
@@ -108,7 +108,7 @@ def test_the_energy_that_goes_with_the_material_closes_the_balance():
     for nodes in (31, 61, 121):
         run, depth = ready_to_wear(nodes)
         before, removal = run.now, run.wear(depth)
-        grown = elastic_energy(run.system, run.now) - elastic_energy(run.system, before)
+        grown = review(run.system, run.now).energy - review(run.system, before).energy
         errors.append(abs(removal.work - grown - removal.dissipation - removal.energy) / removal.energy)
     assert errors[0] < 1e-2
     assert np.all(np.diff(np.log2(errors)) < -1.8)
@@ -118,7 +118,7 @@ def test_the_energy_of_the_implicit_way_closes_the_balance():
     run, depth = ready_to_wear(121)
     before = run.now
     removal = run.wear(depth, 0.2 * np.ones(121))
-    grown = elastic_energy(run.system, run.now) - elastic_energy(run.system, before)
+    grown = review(run.system, run.now).energy - review(run.system, before).energy
     left = removal.work - grown - removal.dissipation - removal.energy
     assert abs(left) < 1e-3 * removal.energy
 

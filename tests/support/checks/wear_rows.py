@@ -10,7 +10,7 @@ from fastpin import Grid, LoadHistory, Problem, SolveOptions
 from fastpin.model import InitialGap, Profile, Wear
 from fastpin.model.angles import BOTTOM
 from fastpin.model.profile_terms import Harmonic
-from fastpin.solver.configuration import elastic_energy
+from fastpin.solver.configuration import review
 from fastpin.verification import interference
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.joint_rows import fretted, step, wearing
@@ -114,7 +114,7 @@ def final_state(nodes: int, load_parameter: float) -> tuple[WornCycle, float]:
 def energy(solving: Solving) -> Checks:
     """The work of the loads along a wear path, against energy, dissipation and the material that goes."""
     run, depth, _ = fretted(121)
-    before = elastic_energy(run.system, run.now)
+    before = review(run.system, run.now).energy
     removal = run.wear(20.0 * depth)
     given = before + removal.work
-    yield relative_check("energy", elastic_energy(run.system, run.now) + removal.dissipation + removal.energy, given)
+    yield relative_check("energy", review(run.system, run.now).energy + removal.dissipation + removal.energy, given)
