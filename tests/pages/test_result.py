@@ -25,6 +25,7 @@ from fastpin.pages.source import MOST_DRAWN, Source
 from fastpin.solver.errors import Interrupted
 from fastpin.states.quantities import QUANTITIES
 from fastpin.storage.layout import RESIDUALS
+from fastpin.storage.stored import StoredResult
 from tests.support.drawing import outline_figures
 from tests.support.html import Page, words_of
 from tests.support.samples import JOINT, sample_result
@@ -136,7 +137,7 @@ def test_page_names_case_loads_key_figures_checks_and_origin(text: str, stored: 
 
 
 def test_rows_that_repeat_are_folded(text: str, stored: Path) -> None:
-    states, gaps = Source.of_file(stored).rows
+    states, gaps = Source.of_file(StoredResult(stored)).rows
     points = [state.step + 1 for state in states]
     ((row, words),) = gaps.items()
     first, last, begin, end, times = map(int, re.findall(r"\d+", words))
