@@ -246,7 +246,7 @@ class BaseJoint:
 
     @staticmethod
     def identity(case: JointFile, strengths: bool) -> dict[str, Any]:
-        """Return the complete input of a run as a JSON-ready dict, without names of materials and units of texts."""
+        """Return the complete input of a run, without names of materials and units of texts."""
         joint, loads = document_of(case.joint), load_values(case.joint, case.corners) + 0.0  # -0 becomes 0
         del joint["unit_system"]
         for part in (*joint["pins"], *joint["plates"]):
@@ -256,8 +256,7 @@ class BaseJoint:
         digest = hashlib.sha256(np.ascontiguousarray(loads, dtype="<f8").tobytes()).hexdigest()
         history = {"corners": len(loads), "names": list(case.joint.load_names), "sha256": digest}
         solver = {"nodes": case.nodes, "harmonics": case.harmonics}
-        found: dict[str, Any] = _plain({"joint": joint, "dimensionless": False, "loads": history, "solve": solver})
-        return found
+        return {"joint": joint, "dimensionless": False, "loads": history, "solve": solver}
 
     @staticmethod
     def problem(case: JointFile) -> Problem:
@@ -325,14 +324,3 @@ def _nested(block: Mapping[str, Any], key: str, inner: list[str], value: Any) ->
 
 def _listed(section: str) -> str:
     return ", ".join(key for key in JOINT_KEYS[section] if key != "name")
-
-
-def _plain(value: Any) -> Any:
-    """A JSON-ready value without infinite numbers and negative zeros."""
-    if isinstance(value, dict):
-        return {name: _plain(each) for name, each in value.items()}
-    if isinstance(value, list):
-        return [_plain(each) for each in value]
-    if isinstance(value, float):
-        return "inf" if math.isinf(value) else value + 0.0
-    return value

@@ -45,7 +45,7 @@ def canonical(case: Case, strengths: bool = False) -> dict[str, Any]:
         **_fields(problem),
         # A solid pin and an infinite plate are left out, so that older ids stay. The friction of a bush changes no
         # state, and enters like fatigue constants: a result says whether the bush slips.
-        **{name: _without_negative_zero(body.as_json(material)) for name, body in problem.given_bodies.items()},
+        **{name: _plain(body.as_json(material)) for name, body in problem.given_bodies.items()},
         "dimensionless": problem.dimensionless,
         "loads": _digested(case.history),
         "solve": _options(case.options),
@@ -64,15 +64,15 @@ def id_of_json(text: str, version: str = __version__) -> str:
 
 
 def canonical_json(document: dict[str, Any]) -> str:
-    """Return a dict as JSON with sorted keys. A number has the fewest digits that give it back exactly."""
-    return json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    """Return a dict as JSON with sorted keys. A number has the fewest digits that give it back exactly.
+
+    Negative zeros are written as 0, infinity as "inf".
+    """
+    return json.dumps(_plain(document), sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
 def _material(material: Material, strengths: bool) -> dict[str, Any]:
-    elastic = {
-        name: "inf" if value == math.inf else _without_negative_zero(value)
-        for name, value in material.constants().items()
-    }
+    elastic: dict[str, Any] = _plain(material.constants())
     constants = {} if material.fatigue is None else material.fatigue.given()
     constants.pop("source", None)
     growth = {} if material.growth is None else law_entries(material.growth)
@@ -85,18 +85,20 @@ def _fields(problem: Problem) -> dict[str, Any]:
     """Return the fields of a problem. A later field with its default is left out, so that older ids stay."""
     usual = {each.name: each.default for each in fields(Problem)}
     return {
-        name: _without_negative_zero(value)
+        name: _plain(value)
         for name, value in problem.entries().items()
         if FIELDS[name].in_ids == "always" or (FIELDS[name].in_ids == "given" and value != usual[name])
     }
 
 
-def _without_negative_zero(value: Any) -> Any:
+def _plain(value: Any) -> Any:
     if isinstance(value, dict):
-        return {name: _without_negative_zero(item) for name, item in value.items()}
+        return {name: _plain(item) for name, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_without_negative_zero(item) for item in value]
-    return float(value) + 0.0 if isinstance(value, float) else value  # -0 becomes 0.
+        return [_plain(item) for item in value]
+    if isinstance(value, float):
+        return "inf" if value == math.inf else float(value) + 0.0  # -0 becomes 0.
+    return value
 
 
 @kept

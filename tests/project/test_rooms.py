@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 45,
     "constants of modules": 1_243,
     "hidden imports": 0,
-    "lines of code": 51_787,
+    "lines of code": 51_777,
     "lines of code of the core": 18_418,
     "files of the core": 134,
     "functions of the core": 1_968,
