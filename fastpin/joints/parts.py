@@ -266,8 +266,8 @@ class JointPin:
             checks.check_fields(self, checks.not_negative, "flexibility")
         if self.heads is not None:
             checks.check_fields(self, _heads, "heads")
-        if self.heads is not None and self.flexibility != BEAM:
-            raise InputError("heads", f'needs a pin that bends, flexibility = "{BEAM}"')
+            if self.flexibility != BEAM:
+                raise InputError("heads", f'needs a pin that bends, flexibility = "{BEAM}"')
         if self.clamp is not None:
             checks.instance("clamp", self.clamp, Clamp, "a Clamp")
             if len(self.plates) == 1:

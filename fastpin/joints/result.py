@@ -310,11 +310,11 @@ class JointResult(Sequence[JointState]):
         InputError
             If no material has the constants, or there are less than two states or no cycle.
         """
-        found: list[SectionDamage] = []
         how = FatigueAssessment() if how is None else instance("how", how, FatigueAssessment, "a FatigueAssessment")
         check_callable("progress", progress)
         check_fatigue(self.joint, how, self._loads)
         places, known = range(len(self)) if how.over == "history" else self._cycle, _assessed_sections(self.joint, how)
+        found: list[SectionDamage] = []
         for done, place in enumerate(known):
             pin, plate = self.joint.sections[place]
 

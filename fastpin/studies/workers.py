@@ -463,8 +463,9 @@ def _arrived(end: RunEnd, path: Path) -> RunEnd:
 def solve_many(cases: Iterable[Case], workers: int = 1) -> list[Result | FastpinError]:
     """Solve many cases, and return the result of each, or its error.
 
-    A case that fails does not stop the others. Every result has the bits of :func:`fastpin.solve`, with any number of
-    workers. Doubts about the input are warned of before the first case is solved. Yield is not looked for.
+    A case that fails does not stop the others. Results have the same bits as those of :func:`fastpin.solve`. The number
+    of workers changes no bit. Doubts about the input are warned of before the first case is solved. Yield is not looked
+    for.
 
     Parameters
     ----------
