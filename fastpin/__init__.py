@@ -18,25 +18,24 @@ dimensionless problem (R = F = beta* = 1). All arrays of a state have one entry 
     0.529
 """
 
+import importlib
+from typing import Any
+
 import lazy_loader
 
-from fastpin.moved import with_homes, with_moved
-
 _face, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
-__getattr__ = with_homes(
-    with_moved(_face, lambda: _face("figures"), ("plot_convergence",)),
-    (
-        "bodies",
-        "lugs",
-        "model",
-        "solver",
-        "states",
-        "damage",
-        "cracks",
-        "storage",
-        "assess",
-        "studies",
-        "figures",
-        "report",
-    ),
-)
+
+
+def __getattr__(name: str) -> Any:
+    """A public name. The error of an unknown one says which folders have it."""
+    try:
+        return _face(name)
+    except AttributeError as error:
+        if name.startswith("_"):
+            raise
+        folders = "bodies lugs model solver states damage cracks storage assess studies figures report"
+        homes = [f"fastpin.{folder}" for folder in folders.split()]
+        found = [home for home in homes if name in getattr(importlib.import_module(home), "__all__", ())]
+        if not found:
+            raise
+        raise AttributeError(f"{error}; there is {' or '.join(f'{home}.{name}' for home in found)}") from None

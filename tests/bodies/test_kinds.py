@@ -1,4 +1,4 @@
-"""The list of bodies: every kind is public and answers all questions, and old places of the names still work."""
+"""The list of bodies: every kind is public and answers all questions."""
 
 import inspect
 
@@ -15,18 +15,6 @@ def test_every_body_is_public():
     assert sorted(made.__name__ for made in KINDS.values()) == sorted(bodies.__all__)
     assert "bodies" in dir(fastpin)
     assert all(kind == made.kind for kind, made in KINDS.items())
-
-
-@pytest.mark.parametrize("name", bodies.__all__)
-def test_bodies_have_their_old_place_too(name):
-    with pytest.warns(DeprecationWarning, match=f"this is fastpin.bodies.{name} now"):
-        assert getattr(fastpin.model, name) is getattr(bodies, name)
-    assert name not in dir(fastpin.model)
-
-
-def test_the_figure_of_a_study_has_its_old_place_too():
-    with pytest.warns(DeprecationWarning, match="this is fastpin.figures.plot_convergence now"):
-        assert fastpin.plot_convergence is fastpin.figures.plot_convergence
 
 
 @pytest.mark.parametrize(("base", "kinds"), [(PinBody, PINS), (PlateBody, PLATES)])

@@ -1,12 +1,10 @@
 """Finite plates: parts and their geometry, and outlines, holes and supports that are refused."""
 
-import importlib
 import pickle
 
 import numpy as np
 import pytest
 
-from fastpin import lugs
 from fastpin.errors import InputError
 from fastpin.lugs.outline import MOST_PARTS, Hole, Lug, Part, PartLoad, distances, rectangle
 from tests.support.lugs import disc, plate
@@ -160,13 +158,3 @@ def test_a_load_along_a_free_component_of_a_support_is_accepted(hold):
     free = {"x": {"y": 1.0}, "y": {"x": 1.0}}.get(hold, {})
     load = PartLoad("sxy", ("left",), **free)
     assert plate(supports={"top": "both", "left": hold}, loads=(load,)).loads == (load,)
-
-
-@pytest.mark.parametrize(
-    "old", ["model.Lug", "model.Part", "model.Hole", "model.PartLoad", "elasticity.plate_compliance"]
-)
-def test_old_places_still_work_with_a_warning(old):
-    folder, name = old.split(".")
-    face = importlib.import_module(f"fastpin.{folder}")
-    with pytest.warns(DeprecationWarning, match=f"this is fastpin.lugs.{name} now"):
-        assert getattr(face, name) is getattr(lugs, name)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, InputError, Material, MaterialPair, Problem, State, benchmarks, published, solve
+from fastpin import MATERIALS, InputError, Material, MaterialPair, Problem, State, solve
 from fastpin.bodies.body import PinLoad
 from fastpin.model.materials import Plane
 from fastpin.published import half_angle, load_term, peak_pressure
@@ -84,11 +84,3 @@ def test_the_lines_for_a_spreadsheet_are_the_formulas() -> None:
     ]
     for number in printed:
         assert number in PAGE, number
-
-
-@pytest.mark.parametrize("name", ["half_angle", "load_term", "peak_pressure", "Outcome", "Row"])
-def test_the_names_have_their_old_place_too(name: str) -> None:
-    with pytest.warns(DeprecationWarning, match=f"this is fastpin.published.{name} now"):
-        assert getattr(benchmarks, name) is getattr(published, name)
-    with pytest.raises(AttributeError, match="attribute half"):
-        benchmarks.half  # noqa: B018

@@ -49,7 +49,6 @@ LEVELS = (
     ("report",),
     ("figures",),
     ("published", "pages", "live"),
-    ("benchmarks",),
     ("cli",),
 )
 
@@ -62,7 +61,7 @@ CORE = ("runtime", "kernels", "model", "bodies", "elasticity", "reading", "state
 WINGS = ("lugs", "tables", "narrow", "drift")
 """Folders that few solutions need. The core imports no file of theirs."""
 
-ROOT_FILES = ("errors", "moved", "version")
+ROOT_FILES = ("errors", "version")
 """Files of rank 0, beside the folders."""
 
 HOMES = {
@@ -108,7 +107,6 @@ UPWARD = {
     "model/profile.py": "Profile is read from a CSV file, which few profiles are",
     "states/state.py": "State shows itself in notebooks",
     "wear_lives/wear_result.py": "WearResult words itself as a table",
-    "solver/__init__.py": "names that have moved to a wing stay here for a version",
     "solver/first_contact.py": "few first contacts are found on a window",
     "solver/path_stepper.py": "the friction changes along few steps",
     "solver/result.py": "Result plots, reports, saves and shows itself, and has its fatigue computed",
@@ -309,8 +307,6 @@ def one_direction(tree: Tree) -> Iterator[str]:
         target = tree.target(one)
         if target is None or one.file in ("__init__.py", "__main__.py") or _calls_a_face(tree, one):
             continue
-        if one.file.endswith("/__init__.py") and target.endswith("/__init__.py"):
-            continue  # where names have moved to: a face is loaded without its files
         if target == "":
             yield f"{one.file}:{one.line} imports the public face"
         elif rank(target) > rank(one.file) or (_folder(target) != _folder(one.file) and rank(target) == rank(one.file)):
@@ -326,7 +322,7 @@ def _calls_a_face(tree: Tree, one: Import) -> bool:
 
 
 def wings_apart(tree: Tree) -> Iterator[str]:
-    """The core imports no file of a wing. It may import the public face of a wing, for names that have moved there."""
+    """The core imports no file of a wing. It may import the public face of a wing."""
     for one in tree.imports:
         target = tree.target(one) or ""
         if _folder(one.file) in CORE and _folder(target) in WINGS and not target.endswith("/__init__.py"):
