@@ -120,7 +120,7 @@ def main() -> None:
         began = time.process_time()
         rows = follow(options.corners, options.nodes, options.keep, path)
         processor = time.process_time() - began
-        states = stored.load_points(path).size
+        states = stored.StoredResult(path).points.size
         last = store.load(path, states=[states - 1])[0]
     columns = dict(zip(NAMES, np.array(rows).T, strict=True))
     begun = columns["corners"] > 0.01 * options.corners

@@ -78,7 +78,7 @@ def run(options: argparse.Namespace) -> int:
 
 def resume(options: argparse.Namespace) -> int:
     """Continue a run that ended early, and write its states."""
-    case = storage.stored_case(options.output)
+    case = storage.StoredResult(options.output).case
     _check_outputs(options)
     _check_shown(case, options)
     with Bar(len(case.history), LOAD_POINTS) as progress_bar:

@@ -498,7 +498,7 @@ def way_on(path: Path | None, error: str | None) -> str:
         return ""
     if storage.is_being_written(path):
         return "its run goes on"
-    command = f"wear CASE -o {path} --resume" if storage.holds_wear(path) else f"resume {path}"
+    command = f"wear CASE -o {path} --resume" if storage.StoredResult(path).is_life else f"resume {path}"
     return f"continue with: fastpin {command}"
 
 

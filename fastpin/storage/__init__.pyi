@@ -15,15 +15,6 @@ from .recording import record as record
 from .recording import resume as resume
 from .store import load as load
 from .store import save as save
-from .stored import holds_joint as holds_joint
-from .stored import holds_wear as holds_wear
-from .stored import lacks_error_bars as lacks_error_bars
-from .stored import largest_residuals as largest_residuals
-from .stored import load_points as load_points
-from .stored import marked_extremes as marked_extremes
-from .stored import places_between as places_between
-from .stored import provenance as provenance
-from .stored import stored_case as stored_case
-from .stored import stored_error as stored_error
+from .stored import StoredResult as StoredResult
 from .wear_files import load_wear as load_wear
 from .wear_files import wear as wear

@@ -28,7 +28,7 @@ from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, Unfit, as_history, check_options, check_start
 from fastpin.storage import files, journal
 from fastpin.storage.store import is_unfinished, load, stored_task
-from fastpin.storage.stored import StoredResult, stored_case
+from fastpin.storage.stored import StoredResult
 from fastpin.storage.writer import FileRecorder, add_coarse, check_overwriting, coarse_of, log
 
 
@@ -176,7 +176,7 @@ def _record_coarse(path: Path, task: Task) -> None:
 def _title_of(path: Path) -> str:
     """Return the title of a stored run; empty if the file is no result."""
     try:
-        return stored_case(path).title
+        return StoredResult(path).case.title
     except InputError:
         return ""
 

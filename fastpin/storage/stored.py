@@ -11,8 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from fastpin.model.case import Case
-from fastpin.model.checks import file_path, whole_number
-from fastpin.model.history import MAX_CORNERS
+from fastpin.model.checks import file_path
 from fastpin.solver.result import Result
 from fastpin.states import extremes
 from fastpin.states.extremes import AT_ONCE, Found, KeptStates
@@ -96,7 +95,11 @@ class StoredResult(Held):
 
     @cached_property
     def origin(self) -> dict[str, str]:
-        """Versions, date, machine and platform, see :func:`provenance`."""
+        """Versions, date, machine and platform by name. What a file does not hold is left out.
+
+        "created" is the date of the file's first writing, UTC, ISO 8601. "run" is there only if a run has written the
+        file, which then holds all options of the solver.
+        """
         with self.opened() as file:
             attributes = {hdf5.text_of(name): hdf5.text_of(value) for name, value in file.attrs.items()}
         versions = {name: value for name, value in attributes.items() if name.startswith("version_")}
@@ -177,121 +180,3 @@ class StoredResult(Held):
             return find(KeptStates(self.few)) if self.few else Found()
         with self.opened() as file:
             return read_extremes(file, find)
-
-
-def load_points(path: str | Path) -> np.ndarray:
-    """Return the load points of the states in a file: step + fraction, 1 at the first corner.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    return StoredResult(path).points
-
-
-def places_between(path: str | Path, first: int, last: int) -> slice:
-    """Return the places of the states in a file from corner `first` to corner `last`, counted from 1.
-
-    Raises
-    ------
-    InputError
-        If a corner is no whole number. Also see :func:`fastpin.load`.
-    """
-    first, last = whole_number("first", first, 0, MAX_CORNERS), whole_number("last", last, 0, MAX_CORNERS)
-    return slice(*np.searchsorted(load_points(path), [first, np.nextafter(last, np.inf)]).tolist())
-
-
-def provenance(path: str | Path) -> dict[str, str]:
-    """Return the versions, the date, the machine and the platform of a stored result, by name.
-
-    The date "created" is that of the file's first writing, UTC, ISO 8601. The entry "run" is there only if a run has
-    written the file, which then holds all options of the solver. What a file does not hold is left out.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    return StoredResult(path).origin
-
-
-def largest_residuals(path: str | Path) -> dict[str, float]:
-    """Return the largest residual of each kind over all states of a file, see :class:`fastpin.State`.
-
-    A file without states has none.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    return StoredResult(path).residuals
-
-
-def marked_extremes(path: str | Path) -> Found:
-    """Return the extremes of all states of a file that texts and figures show, see fastpin/states/extremes.py.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    return StoredResult(path).extremes
-
-
-def stored_case(path: str | Path) -> Case:
-    """Read the case of a stored result: problem, history, options, title, who made it for what, and its assessment.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    return StoredResult(path).case
-
-
-def stored_error(path: str | Path) -> str | None:
-    """Return the message of the error that ended a stored run early; None if no error did.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    return StoredResult(path).error
-
-
-def lacks_error_bars(path: str | Path) -> bool:
-    """Whether the run of a file is finished, but the run on the coarse grid that gives its error bars is not.
-
-    :func:`resume` then continues the run on the coarse grid.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    return StoredResult(path).lacks_error_bars
-
-
-def holds_wear(path: str | Path) -> bool:
-    """Whether a result is that of a life of wear.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    return StoredResult(path).is_life
-
-
-def holds_joint(path: str | Path) -> bool:
-    """Whether a result is that of a joint of several pins.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    return StoredResult(path).is_joint

@@ -132,7 +132,7 @@ def test_a_case_with_a_crack_has_its_growth():
     assert document["life"] == pytest.approx(found.life, rel=1e-12)
     assert document["law"]["source"] == "own tests"
     assert (document["fate"], document["arrest"], document["angle_of_mouth"]) == ("grows", None, pytest.approx(66.0))
-    assert fastpin.storage.stored_case("case.h5").crack == fastpin.read_case("case.toml").crack
+    assert fastpin.storage.StoredResult("case.h5").case.crack == fastpin.read_case("case.toml").crack
     assert "100 um to 1 mm, at 66 deg, walker, C = 1e-10" in printed("check", "case.toml")
     said("report", "case.h5", "-o", "page.html")
     law = "Law of growth: walker, C = 1e-10, m = 3, exponent = 0.5 (SI units); source: own tests."

@@ -57,7 +57,7 @@ def test_run_and_show_print_the_states_and_name_the_reading(case, monkeypatch, r
     assert "Not known: can" in Path("page.html").read_text()
     with pytest.raises(ReadingError, match="peak_hoop: can't be read"):
         fastpin.load("whole.h5").extremes()
-    assert set(storage.marked_extremes("whole.h5").unread) == {"peak_hoop"}
+    assert set(storage.StoredResult("whole.h5").extremes.unread) == {"peak_hoop"}
 
 
 def test_a_run_ends_with_its_states_where_no_stress_can_be_read(case, monkeypatch):

@@ -132,7 +132,7 @@ def test_texts_of_a_result_harm_no_reader(path: Path, tmp_path: Path) -> None:
     for file in files.values():
         assert ("HYPERLINK" in check_file(file)) == (file.suffix != ".csv")
     found = storage.load(path)
-    values = [repr(found), repr(found.problem), storage.stored_error(path), storage.provenance(path)]
+    values = [repr(found), repr(found.problem), storage.StoredResult(path).error, storage.StoredResult(path).origin]
     assert is_printable([*repr(values).split("\n"), dict(storage.to_xarray(path).attrs)])
 
 

@@ -51,7 +51,7 @@ def test_a_case_with_a_strength_has_its_ratio_and_its_load_at_failure():
     assert told["ratio"] == pytest.approx(found.least_ratio, rel=1e-12)
     assert told["failure"]["factor"] == pytest.approx(failure.factor, rel=1e-9)
     assert told["failure"]["load"]["P"] == pytest.approx(2e3 * failure.factor)  # N: with a thickness
-    assert fastpin.storage.stored_case("case.h5").strength == case.strength
+    assert fastpin.storage.StoredResult("case.h5").case.strength == case.strength
     assert "tsai-wu 500 um from the edge, with the load at failure" in printed("check", "case.toml")
     said("report", "case.h5", "-o", "page.html")
     page = Path("page.html").read_text()

@@ -73,7 +73,7 @@ def test_a_stored_life_keeps_how_its_fatigue_is_assessed():
     text = CASE.replace('material = "aluminium"', constants).replace("repeat = 12", "repeat = 2")
     Path("case.toml").write_text(f'{text}[fatigue]\nbodies = "plate"\nlife = 100\n')
     said("wear", "case.toml", "-o", "life.h5")
-    assert fastpin.storage.stored_case("life.h5").fatigue == fastpin.read_case("case.toml").fatigue
+    assert fastpin.storage.StoredResult("life.h5").case.fatigue == fastpin.read_case("case.toml").fatigue
 
 
 def test_options_take_the_place_of_the_case():

@@ -110,8 +110,8 @@ def test_a_stored_result_knows_its_assessment(tmp_path):
     how = FatigueAssessment([SWT, FS], "plate", angles=[10.0, 95.5], small_cycles="original", knee=2e6, straight=True)
     fastpin.record(problem, [{"P": 1e6}, {"Q": 1e5}], tmp_path / "one.h5", fatigue=how, nodes=31)
     fastpin.record(problem, [{"P": 1e6}, {"Q": 1e5}], tmp_path / "two.h5", nodes=31)
-    assert fastpin.storage.stored_case(tmp_path / "one.h5").fatigue == how
-    assert fastpin.storage.stored_case(tmp_path / "two.h5").fatigue is None
+    assert fastpin.storage.StoredResult(tmp_path / "one.h5").case.fatigue == how
+    assert fastpin.storage.StoredResult(tmp_path / "two.h5").case.fatigue is None
 
 
 BAD = {

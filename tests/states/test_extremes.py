@@ -187,7 +187,7 @@ def test_stored_states_of_a_bush_that_slips_have_the_same_extremes(tmp_path: Pat
     result = fastpin.solve(JOINTS["bush that slips"], random_history(6), nodes=61)
     result.save(path)
     found = marked_extremes(KeptStates(result.states))
-    assert storage.marked_extremes(path) == found
+    assert storage.StoredResult(path).extremes == found
     slips = [state.seat.peak_slip for state in result if state.seat is not None]
     assert abs(found["seat_slip", "largest magnitude"].value) == np.abs(slips).max() > 0.0
 

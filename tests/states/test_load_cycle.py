@@ -10,7 +10,7 @@ import pytest
 from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, Result, load, record, solve
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
 from fastpin.states import LoadCycle, NodeBehaviour
-from fastpin.storage import places_between
+from fastpin.storage import StoredResult
 from tests.support.joints import joint
 
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
@@ -334,7 +334,7 @@ def test_a_loaded_result_has_the_same_cycle(tmp_path, keep: str) -> None:
     expected = solved(keep=keep).cycle()
     record(*CYCLES["forces"], tmp_path / "a.h5", nodes=81, keep=keep, slip_sums=True)
     whole = load(tmp_path / "a.h5")
-    part = load(tmp_path / "a.h5", states=places_between(tmp_path / "a.h5", 11, 13))
+    part = StoredResult(tmp_path / "a.h5").part(11, 13)
     for found in (whole.cycle(), part.cycle()):
         for name, (values, unit) in expected.columns().items():
             assert np.array_equal(found.columns()[name][0], values), name

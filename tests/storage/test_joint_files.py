@@ -29,7 +29,7 @@ from fastpin.joints import (
 )
 from fastpin.lugs.outline import Hole, PartLoad, rectangle
 from fastpin.model import MATERIALS, CrackGrowth, FatigueAssessment
-from fastpin.storage import holds_joint, load_joint, record_joint, resume_joint, stored_joint, writer
+from fastpin.storage import StoredResult, load_joint, record_joint, resume_joint, stored_joint, writer
 from tests.support.files import replaced, written
 from tests.support.laps import FORCE, SHEETS, STEEL, through_both, with_cover
 from tests.support.processes import finished, python
@@ -134,7 +134,7 @@ def test_a_file_keeps_what_is_followed_and_asked(path: Path) -> None:
     assert found.joint == joint
     assert found.corners == [dict.fromkeys(joint.load_names, 0.0) | {"skin.sxx": 1e7}] * 2
     assert (found.title, found.nodes, found.harmonics, found.fatigue, found.crack) == ("a title", 16, 8, how, crack)
-    assert holds_joint(path)
+    assert StoredResult(path).is_joint
 
 
 @pytest.mark.gate
@@ -277,11 +277,11 @@ def test_files_of_other_results_are_refused(path: Path, whole: bytes, tmp_path: 
             f"{one_pin}: holds the result of one pin, not of a joint of several; fastpin show and fastpin.load read it"
         )
         assert str(refused(read, one_pin)) == words
-    for take in (fastpin.load, fastpin.resume, fastpin.storage.stored_case):
+    for take in (fastpin.load, fastpin.resume, lambda path: StoredResult(path).case):
         assert str(refused(take, path)).startswith(
             f"{path}: holds a joint of several pins; fastpin show, joint --resume"
         )
-    assert not holds_joint(one_pin)
+    assert not StoredResult(one_pin).is_joint
     assert "holds a finished joint: there is nothing to go on with" in str(refused(resume_joint, path))
     assert "exists already; overwrite=True (--overwrite)" in str(refused(record_joint, LONGER, path))
     with h5py.File(path, "r+") as file:

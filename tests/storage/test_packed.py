@@ -105,9 +105,9 @@ def test_every_changed_byte_is_noticed(result: Result) -> None:
 def test_the_path_of_a_file_reads_the_result_in_an_index(result, path):
     assert_same(store.load(path), result)
     assert len(store.load(path, states=[-1])) == 1
-    assert storage.load_points(path).size == len(result)
-    assert storage.load_points(path)[-1] == 5.0
-    assert storage.stored_error(path) == "lost"
+    assert storage.StoredResult(path).points.size == len(result)
+    assert storage.StoredResult(path).points[-1] == 5.0
+    assert storage.StoredResult(path).error == "lost"
     assert storage.to_xarray(path).sizes["theta"] == 31
     assert "peak N" in printed("show", path)
     with pytest.raises(InputError, match="there is no such file"):

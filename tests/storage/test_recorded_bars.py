@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from fastpin import InputError, Interrupted, NoEquilibriumError, record, resume, solve
-from fastpin.storage import lacks_error_bars, recording, store, stored_case, writer
+from fastpin.storage import StoredResult, recording, store, writer
 from fastpin.storage.writer import coarse_of
 from tests.support.commands import printed, said
 from tests.support.programs import P, assert_same, q
@@ -38,7 +38,7 @@ def assert_bars(path, expected):
     assert_same(found.coarse, expected.coarse)
     for one, two in zip(found[::5], expected[::5], strict=True):
         assert repr(dict(one.error_bars)) == repr(dict(two.error_bars))
-    assert not lacks_error_bars(path)
+    assert not StoredResult(path).lacks_error_bars
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
 
 
@@ -46,7 +46,7 @@ def assert_bars(path, expected):
 def test_a_file_holds_the_bars_of_a_solution(problem, expected, path):
     record(problem, HISTORY, path, error_bars=True, **OPTIONS)
     assert_bars(path, expected)
-    assert stored_case(path).options.error_bars
+    assert StoredResult(path).case.options.error_bars
     with pytest.raises(InputError, match="holds a finished run: there is nothing to continue"):
         resume(path)
 
@@ -59,7 +59,7 @@ def test_an_interrupted_run_gets_its_bars(problem, expected, path, run, steps):
     early = store.load(path)
     assert early.coarse is None
     assert all(state.error_bars is None for state in early)
-    assert lacks_error_bars(path) == early.complete == (run == 2)
+    assert StoredResult(path).lacks_error_bars == early.complete == (run == 2)
     if run == 2:
         assert ended.value.result[-1].dissipation == expected[-1].dissipation
     resume(path)
@@ -79,7 +79,7 @@ def test_a_run_killed_before_its_coarse_states_are_in_the_file(problem, expected
         patch.setattr(writer.layout, "read_cycles", fail)  # the coarse states are in the file, but not for good
         with pytest.raises(KeyboardInterrupt):
             resume(path)
-    assert lacks_error_bars(path)
+    assert StoredResult(path).lacks_error_bars
     resume(path)
     assert_bars(path, expected)
 

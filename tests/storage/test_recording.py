@@ -26,8 +26,8 @@ from fastpin.solver.solving import solve
 from fastpin.storage import journal, layout, store, writer
 from fastpin.storage.journal import journal_of
 from fastpin.storage.recording import record as follow
-from fastpin.storage.recording import resume, stored_case
-from fastpin.storage.stored import load_points
+from fastpin.storage.recording import resume
+from fastpin.storage.stored import StoredResult
 from fastpin.storage.writer import checkpoint_of, coarse_of
 from tests.support.interrupts import StopAt, record_in_parts
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
@@ -256,7 +256,7 @@ def test_a_full_disk_leaves_what_was_there(problem, whole, path, monkeypatch):
         patch.setattr(journal.os, "pwrite", pwrite)
         with pytest.raises(OutputError, match="can't be written: No space left"):
             follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1))
-    assert 1 < load_points(path).size < 40
+    assert 1 < StoredResult(path).points.size < 40
     resume(path)
     assert_file(path, whole)
 
@@ -270,7 +270,7 @@ def test_what_happens_at_the_very_end_locks_nobody_out(problem, path, monkeypatc
         patch.setattr(layout, "write_statistics", fail)
         with pytest.raises((KeyboardInterrupt, OSError)):
             follow(problem, RANDOM[:6], path, nodes=61, arc=(-3.0, -0.1))
-    assert load_points(path).size <= 6
+    assert StoredResult(path).points.size <= 6
     resume(path)
     assert_file(path, solve(problem, RANDOM[:6], nodes=61, arc=(-3.0, -0.1)))
 
@@ -542,7 +542,7 @@ def test_corners_that_can_not_be_branched_from(problem, path, tmp_path):
 
 def test_what_a_run_was_asked_for_is_in_its_file(problem, path):
     follow(problem, PROGRAMS["two levels"], path, nodes=61, between=[0.25], keep="every 2", title="A title")
-    case = stored_case(path)
+    case = StoredResult(path).case
     assert case.problem == problem
     assert case.title == "A title"
     assert (case.options.nodes, case.options.keep, case.options.between) == (61, "every 2", (0.25,))
@@ -554,10 +554,10 @@ def test_what_a_run_was_asked_for_is_in_its_file(problem, path):
 
 def test_the_arc_of_a_run_is_in_its_file(problem, path):
     follow(problem, P, path, nodes=21, arc=(-3.0, -0.1))
-    assert stored_case(path).options.arc == (-3.0, -0.1)
+    assert StoredResult(path).case.options.arc == (-3.0, -0.1)
     with h5py.File(path, "r+") as file:
         file["solver"].attrs["arc"] = (-3.0, 5.0)  # an earlier version took it as a circle
-    assert stored_case(path).options.arc == (-3.0, -3.0 + 2.0 * np.pi)
+    assert StoredResult(path).case.options.arc == (-3.0, -3.0 + 2.0 * np.pi)
 
 
 @pytest.mark.gate
@@ -609,8 +609,8 @@ def test_a_file_keeps_who_made_its_case_also_after_an_interruption(problem, path
     about, history = About("Hinge 4711", "", "B <b>", "2026-03-31"), RANDOM
     with pytest.raises(Interrupted):
         follow(problem, history, path, title="title", about=about, nodes=61, arc=(-3.0, -0.1), progress=StopAt(20))
-    assert stored_case(path).about == about
+    assert StoredResult(path).case.about == about
     resume(path)
-    assert (stored_case(path).title, stored_case(path).about) == ("title", about)
+    assert (StoredResult(path).case.title, StoredResult(path).case.about) == ("title", about)
     with pytest.raises(InputError, match="about: must be an About"):
         follow(problem, history, path, about="me", overwrite=True)

@@ -19,7 +19,7 @@ from fastpin.states.state import State
 from fastpin.storage.export import to_xarray
 from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS, SLIP_FIELDS, WITH_LAMINATE
 from fastpin.storage.store import load, save
-from fastpin.storage.stored import load_points
+from fastpin.storage.stored import StoredResult
 from tests.support.files import replaced
 from tests.support.samples import PAIR, sample_result
 
@@ -153,7 +153,7 @@ def test_a_directory_that_does_not_exist(tmp_path: Path) -> None:
 def test_some_states_alone(path: Path) -> None:
     result = sample_result([{"P": 1e6 * k} for k in range(1, 8)])
     save(result, path)
-    assert load_points(path).size == 7
+    assert StoredResult(path).points.size == 7
     for picked, steps in ((slice(2, 5), [2, 3, 4]), ([0, 6], [0, 6]), ([], []), (slice(-1, None), [6])):
         found = load(path, states=picked)
         assert [state.step for state in found] == steps

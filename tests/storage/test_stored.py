@@ -108,9 +108,9 @@ def test_commands_open_their_file_once(path, opened, monkeypatch, command):
 
 def test_the_functions_of_a_path_read_the_same(path):
     stored = StoredResult(path)
-    assert storage.load_points(path).tolist() == stored.points.tolist() == [1.0, 2.0, 3.0]
-    assert storage.places_between(path, 1, 2) == slice(0, 2)
-    assert storage.marked_extremes(path) == stored.extremes
+    assert storage.StoredResult(path).points.tolist() == stored.points.tolist() == [1.0, 2.0, 3.0]
+    assert [state.step for state in storage.StoredResult(path).between(1, 2)] == [0, 1]
+    assert storage.StoredResult(path).extremes == stored.extremes
 
 
 @pytest.mark.gate

@@ -17,7 +17,7 @@ from fastpin.cracks import Nasgro
 from fastpin.model import InitialGap, Laminate, Ply, PlyStrengths, Profile
 from fastpin.report import json_schema
 from fastpin.report.summary import document
-from fastpin.storage import packed, stored_case, to_xarray
+from fastpin.storage import StoredResult, packed, to_xarray
 from fastpin.storage.layout import FORMAT_VERSION, WITH_LAMINATE, WITH_PROFILES
 from fastpin.storage.store import pack
 from fastpin.studies.identity import canonical, canonical_json
@@ -175,7 +175,7 @@ def test_a_run_has_its_profiles_in_its_document(path: Path) -> None:
     given = problem(friction=FRICTION, gap=InitialGap(Profile.ellipse(3e-6, 0.7)))
     history = LoadHistory([{"P": 5e5}, {"Q": 1e5}, {"Q": -1e5}, {"Q": 1e5}])
     record(given, history, path, nodes=41, arc=(-3.0, -0.1))
-    case = stored_case(path)
+    case = StoredResult(path).case
     assert case.problem == given
     found = document(case, load(path))
     assert [next(iter(term)) for term in found["problem"]["friction"]] == ["constant", "zone"]
@@ -193,7 +193,7 @@ def test_a_profile_enters_ids_with_every_bit(path: Path) -> None:
     texts = []
     for gap in (*ovals, InitialGap(pin=Profile.ellipse(1e-5))):
         save(sample_result(problem=problem(gap=gap)), path)
-        texts.append(canonical_json(canonical(stored_case(path))))
+        texts.append(canonical_json(canonical(StoredResult(path).case)))
     assert '"gap"' not in texts[0]
     assert len(set(texts)) == 4
 

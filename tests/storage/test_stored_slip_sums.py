@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fastpin import InputError, Interrupted, Problem, load, record, resume, solve
-from fastpin.storage import places_between, to_xarray, writer
+from fastpin.storage import StoredResult, to_xarray, writer
 from fastpin.storage.layout import SLIP_FIELDS
 from tests.support.files import replaced, written
 from tests.support.interrupts import StopAt, record_in_parts
@@ -73,8 +73,7 @@ def test_states_that_do_not_follow_on_one_another_lose_their_sums(problem: Probl
     known_sums = [state.slip_distance is not None for state in load(path, states=[3, 4, 7, 8, 2])]
     assert known_sums == [True, True, False, True, False]
     assert [state.slip_distance is None for state in load(path, states=slice(None, None, 3))][1:] == [True] * 13
-    assert places_between(path, 3, 5) == slice(2, 5)
-    assert [state.step for state in load(path, states=places_between(path, 3, 5))] == [2, 3, 4]
+    assert [state.step for state in StoredResult(path).between(3, 5)] == [2, 3, 4]
 
 
 def test_datasets_have_the_sums_with_units(problem: Problem, path: Path) -> None:

@@ -14,7 +14,7 @@ import fastpin
 from fastpin import InputError, Interrupted
 from fastpin.model import FatigueAssessment
 from fastpin.solver.errors import ResolutionError
-from fastpin.storage import stored_case, wear_files, writer
+from fastpin.storage import StoredResult, wear_files, writer
 from fastpin.storage.journal import JournaledFile
 from fastpin.wear_lives import WearResult
 from fastpin.wear_lives.fat_cycles import FatCycles, Worn
@@ -217,7 +217,7 @@ def test_a_life_without_a_stored_cycle_keeps_its_title(path, monkeypatch):
         with pytest.raises(MemoryError):
             life(path, title="one life")
     life(path, resume=True, title="one life")
-    assert stored_case(path).title == "one life"
+    assert StoredResult(path).case.title == "one life"
 
 
 KILLED = """

@@ -8,7 +8,7 @@ import fastpin
 from fastpin import CaseFileError, cracks, damage
 from fastpin.assess.fatigue import find
 from fastpin.report import summary
-from fastpin.storage import stored_case
+from fastpin.storage import StoredResult
 from fastpin.storage.held import Held
 from fastpin.studies import parse_plan, read_plan, read_tolerances, sweep
 from fastpin.studies.outcomes import value_of
@@ -176,11 +176,11 @@ def test_stored_runs_keep_the_sections(folder, files):
     path = folder / f"plan/results/{plan.points[0].id}.h5"
     assert path.exists() == files
     case = plan.case(plan.points[0])
-    assert (stored_case(path).fatigue, stored_case(path).crack) == (case.fatigue, case.crack)
+    assert (StoredResult(path).case.fatigue, StoredResult(path).case.crack) == (case.fatigue, case.crack)
     if not files:  # the result goes from the index to a file
         sweep.run(plan, folder / "plan", workers=1, files=True)
         assert path.exists()
-        assert (stored_case(path).fatigue, stored_case(path).crack) == (case.fatigue, case.crack)
+        assert (StoredResult(path).case.fatigue, StoredResult(path).case.crack) == (case.fatigue, case.crack)
     shown = json.loads(printed("show", path, "--json", "-"))
     ran = json.loads(printed("run", folder / "case.toml", "--json", "-"))
     assert shown["margins"] == ran["margins"]

@@ -569,9 +569,9 @@ def try_result(rng: np.random.Generator, path: Path, seen: Examination) -> None:
     result = seen.python("load", lambda: store.load(path))
     seen.python("load some", lambda: store.load(path, states=[0, -1]))
     seen.python("load after", lambda: store.load(path, after=2))
-    seen.python("stored_case", lambda: stored.stored_case(path))
-    seen.python("stored_error", lambda: stored.stored_error(path))
-    seen.python("load_points", lambda: stored.load_points(path).size)
+    seen.python("stored_case", lambda: stored.StoredResult(path).case)
+    seen.python("stored_error", lambda: stored.StoredResult(path).error)
+    seen.python("load_points", lambda: stored.StoredResult(path).points.size)
     seen.python("to_xarray", lambda: export.to_xarray(path))
     if result is not None:
         seen.python("repr", lambda: repr(result))

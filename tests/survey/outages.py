@@ -42,7 +42,7 @@ from fastpin.storage import recording, store, writer
 from fastpin.storage.files import BESIDE_RESULT
 from fastpin.storage.journal import is_empty
 from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS
-from fastpin.storage.stored import load_points
+from fastpin.storage.stored import StoredResult
 from fastpin.studies import sweep
 from fastpin.studies.plan import read_plan
 from tests.support.processes import without_progress
@@ -287,7 +287,7 @@ class Trial:
             path = folder / self.command.output
             if path.suffix == ".h5" and path.exists() and path.stat().st_size:
                 with suppress(InputError):  # the run has not begun
-                    now = load_points(path).size
+                    now = StoredResult(path).points.size
                     if now < found:
                         self.findings.append(f"{self.name}: a reader saw {now} states after {found}")
                     found = now
@@ -462,7 +462,7 @@ def kill_run(folder: Path, most: int, rounds: int, longest: float = 1.0, seed: i
             return Kills(hits, [*findings, f"after {hits} kills: {log.read_text()[-600:]}"])
         hits += code != 0
         acknowledged = int(re.findall(r"(\d+) states in the file\n", log.read_text())[-1])
-        if (stored := load_points(path).size) < acknowledged:
+        if (stored := StoredResult(path).points.size) < acknowledged:
             findings.append(f"kill {hits}: {stored} of {acknowledged} acknowledged states")
     for each in (path, whole):
         subprocess.run([*HERE, "work", each, str(rounds)], cwd=ROOT, check=True, stderr=subprocess.DEVNULL)

@@ -176,9 +176,9 @@ def test_a_file_has_extremes_from_so_many_states_on(long: Path, least: None, tmp
 
 
 def test_a_long_result_has_its_extremes_in_the_file(long: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    known = storage.marked_extremes(long)
+    known = storage.StoredResult(long).extremes
     monkeypatch.setattr(stored_states.StoredStates, "blocks", lambda self: pytest.fail("all states were read"))
-    assert storage.marked_extremes(long) == known
+    assert storage.StoredResult(long).extremes == known
     assert marked_places(known)
 
 
@@ -205,7 +205,7 @@ def test_extremes_in_a_file_are_checked(long: Path, tmp_path: Path, damage: str)
     with h5py.File(path, "r+") as file:
         assert stored_states.read_extremes(file, lambda _: found) is found
     if damage == "value":
-        assert storage.marked_extremes(path) == storage.marked_extremes(long)
+        assert storage.StoredResult(path).extremes == storage.StoredResult(long).extremes
 
 
 def test_a_saved_long_result_has_the_same_extremes(long: Path, least: None, tmp_path: Path) -> None:
@@ -213,4 +213,4 @@ def test_a_saved_long_result_has_the_same_extremes(long: Path, least: None, tmp_
     result.save(tmp_path / "c.h5")
     with h5py.File(tmp_path / "c.h5") as file:
         assert "extremes" in file
-    assert storage.marked_extremes(tmp_path / "c.h5") == storage.marked_extremes(long)
+    assert storage.StoredResult(tmp_path / "c.h5").extremes == storage.StoredResult(long).extremes

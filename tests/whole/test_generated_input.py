@@ -19,7 +19,7 @@ from fastpin.errors import printable
 from fastpin.model.acting import check_arc, check_loads
 from fastpin.model.loads import Corner
 from fastpin.model.profile import is_pair
-from fastpin.storage import stored_case
+from fastpin.storage import StoredResult
 from fastpin.studies import parse_plan
 from tests.support import strategies
 from tests.support.faults import faults_of
@@ -148,7 +148,7 @@ def assert_solved_or_lost(problem: fastpin.Problem, rows: list[Corner], folder: 
     if path.exists():
         result = fastpin.load(path)
         assert result.problem == problem
-        assert stored_case(path).problem == problem
+        assert StoredResult(path).case.problem == problem
         for state in result:
             numbers = [state.dx, state.dy, state.rotation, state.dissipation, state.work, state.energy]
             assert all(
