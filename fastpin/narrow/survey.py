@@ -15,6 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fastpin.bodies.bushing import Bushing
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import angle_between
@@ -37,7 +38,7 @@ from fastpin.solver.rest import bend, climb_angle, lowest_angle, release
 from fastpin.solver.result import Restart
 from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.settling import FiniteStep
-from fastpin.solver.step import LEAST_CLOSED
+from fastpin.solver.step import LEAST_CLOSED, pieces
 
 log = logging.getLogger(__name__)
 
@@ -47,8 +48,8 @@ GapPlace = tuple[float, float]
 LEAST_ACROSS = (10, 20)
 """Nodes across the narrowest contact of a graded grid, at least; more where a contact gets lost on the first grid."""
 
-MOST_GRADED = 20_000
-"""Nodes of a graded grid, at most, unless the user asks for more."""
+MOST_GRADED, MOST_IN_BUSH = 20_000, 800
+"""Nodes of a graded grid, at most, unless the user asks for more; and in a bush, whose seat has as many."""
 
 ACROSS = 24
 """Nodes across the contact on a grid of the survey."""
@@ -70,12 +71,18 @@ def narrow_grids(
     Parameters
     ----------
     problem, values, force, progress
-        See :func:`fastpin.solver.arc.candidate_grids`.
+        See :func:`fastpin.solver.arc.candidate_grids`. A bush with a seat of its own is surveyed as if it was bonded in
+        an infinite plate: the places and widths of the pin's contacts are nearly the same.
     options : SolveOptions
-        A grid has more nodes than its ``nodes`` where so many are needed, up to :data:`MOST_GRADED`. There is none if
-        the history could not be surveyed.
+        A grid has more nodes than its ``nodes`` where so many are needed, up to :data:`MOST_GRADED` or
+        :data:`MOST_IN_BUSH`. There is none if the history could not be surveyed.
     """
     first_part = float(options.fractions[0]) if options.keep_rule.inside else 1.0
+    most = max(MOST_GRADED if problem.seat is None else MOST_IN_BUSH, options.nodes)
+    if problem.seat is not None:
+        bush = problem.plate_body.bush
+        bonded = Bushing(bush.material, bush.outer_radius, max(bush.interference, 0.0))
+        problem = replace(problem, plate_body=bonded)
     places = survey(problem, outermost_corners(problem, values), force, first_part, progress)
     if not places:
         return
@@ -88,7 +95,7 @@ def narrow_grids(
         width = across * length / options.nodes  # as dense everywhere as equally spaced nodes
         between = [(float(angle), width) for angle in start + np.arange(0.0, length + 0.5 * width, 0.5 * width)]
         needed = graded_size(distinct + between, across)
-        if needed > max(MOST_GRADED, options.nodes):
+        if needed > most:
             log.info("the narrow contacts of this history take %d nodes: too many", needed)
             return
         yield Grid.graded(distinct + between, max(options.nodes, needed), first_direction(problem, values))
@@ -156,7 +163,16 @@ class _Survey:
         self._part = LARGEST_PART
 
     def follow(self, before: np.ndarray, target: np.ndarray) -> bool:
-        """Follow a step between two loads, SI. Returns whether its end was reached."""
+        """Follow a step between two loads, SI. Returns whether its end was reached.
+
+        Where the force passes through zero, the contact ends, and another one begins elsewhere.
+        """
+        unit = self._system.scales.loads
+        parts = pieces(before / unit, target / unit, self._system.is_nearly_neat)
+        return all(self._follow_piece(unit * each.before, unit * each.after) for each in parts)
+
+    def _follow_piece(self, before: np.ndarray, target: np.ndarray) -> bool:
+        """Follow a straight piece between two loads, SI. Returns whether its end was reached."""
         done, finer, releases, least_part = 0.0, 1.0, 0, 1e-9
         for _ in range(1500):
             if done >= 1.0:

@@ -184,7 +184,7 @@ class Task:
 
     def _graded(self, progress: RunProgress | None, unfit: Unfit | None) -> Iterable[Grid]:
         """Graded grids for narrow contacts. If an earlier run has ended on one of them, the grids after it."""
-        if self.grid is not None or self.options.arc is not None or self.problem.seat is not None:
+        if self.grid is not None or self.options.arc is not None:
             return ()
         from fastpin.narrow import narrow_grids
 

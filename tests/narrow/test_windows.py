@@ -1,12 +1,14 @@
 """Narrow contacts: graded grids, the survey that chooses them, and the windows on which they are followed."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fastpin import InputError, LoadHistory, Material, MaterialPair, Problem, SolveOptions, load, record, resume, solve
+from fastpin.bodies import Bushing
 from fastpin.elasticity import build
 from fastpin.elasticity.build import build_system
 from fastpin.elasticity.system import System
@@ -139,6 +141,44 @@ def test_narrow_contacts_are_solved_with_few_nodes(corners, nodes):
     fine = solve(case, corners, grid=result.grid.with_nodes(2 * result.grid.size))
     for one, two in zip(result, fine, strict=True):
         assert one.peak_pressure == pytest.approx(two.peak_pressure, rel=0.02)
+
+
+@pytest.mark.gate
+def test_a_force_that_changes_sign_needs_no_nodes_between_its_contacts():
+    case = problem(1.0)
+    result = solve(case, [{"P": 1.0}, {"P": -2e-4}, {"P": 1.0}], nodes=61)
+    assert result.grid.size < 200
+    top = np.abs(np.array(result[1].contact) - 0.5 * np.pi)
+    assert np.all(np.minimum(top, 2.0 * np.pi - top) < 0.1)
+    for state, force in zip(result, (1.0, -2e-4, 1.0), strict=True):
+        assert worst(state) < 1e-10
+        assert state.resultants["P"] == pytest.approx(force, rel=1e-9)
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize(("interference", "small"), [(2e-5, -2e-4), (0.0, 1e-5), (-4e-6, -2e-4)])
+def test_small_loads_between_large_ones_leave_a_narrow_contact_in_a_bush(interference, small):
+    bush = Bushing(Material(110e9, 0.34), 6.5e-3, interference, friction=0.15, bonded=False)
+    pair = MaterialPair(Material(210e9, 0.3), Material(72e9, 0.33), plane="stress")
+    case = Problem(pair, 5e-3, clearance=20e-6, friction=0.15, plate_body=bush)
+    result = solve(case, [{"P": 2.5e6}, {"P": 2.5e6 * small}, {"P": 2.5e6}], nodes=61)
+    assert not result.grid.uniform
+    assert result.grid.size < 200
+    fine = solve(case, result.history, grid=result.grid.with_nodes(2 * result.grid.size))
+    for state, finer in zip(result, fine, strict=True):
+        assert worst(state) < 1e-10
+        assert worst(state.seat) < 1e-10
+        assert np.count_nonzero(state.pressure) >= 0.6 * surveys.LEAST_ACROSS[0]
+        assert state.resultants["P"] == pytest.approx(state.load["P"], rel=1e-9)
+        assert state.peak_pressure == pytest.approx(finer.peak_pressure, rel=0.02)
+
+
+@pytest.mark.gate
+def test_a_bush_has_fewer_graded_nodes_than_a_plate(monkeypatch):
+    monkeypatch.setattr(surveys, "MOST_IN_BUSH", 70)
+    bush = Bushing(Material(9.0, 0.2), 1.3, friction=0.3, bonded=False)
+    joint = replace(problem(200.0), plate_body=bush)
+    assert not list(narrow_grids(joint, LoadHistory(SMALL_FIRST).values(), 1.0, SolveOptions(nodes=61)))
 
 
 @pytest.mark.gate
