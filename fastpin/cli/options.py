@@ -203,15 +203,17 @@ def add_wear(commands: Any) -> None:
 def add_plot(commands: Any) -> None:
     """Add ``plot``."""
     plot = _command(commands, "plot", "plot", "run", "draw a stored result: stresses, slip, loops, fatigue, wear")
-    words = "HDF5 file (run or wear -o FILE); for sketch and gap also a case file (TOML)"
+    words = "HDF5 file (run, wear or joint -o FILE); for sketch and gap also a case file (TOML)"
     _option(plot, "result", "FILE", words, Path)
     words = "; ".join(f"{name}: {kind.words}" if kind.words else name for name, kind in KINDS.items())
-    defaults = "default: tractions; scar of a life of wear, sketch of a case file"
+    defaults = "default: tractions; scar of a life of wear, holes of a joint, sketch of a case file"
     plot.add_argument("kind", nargs="?", choices=tuple(KINDS), help=f"{words} ({defaults})")
     words = "the figure (png, pdf or svg; default KIND.png)"
     _option(plot, "-o --output", "FIGURE", words, Path)
     _option(plot, "--csv", "FILE", "also write the numbers of the figure", Path)
     _add_interface(plot)
+    _option(plot, "--pin", "NAME", "of a joint of several pins: the figure shows this pin")
+    _option(plot, "--plate", "NAME", "of a joint: in this plate, or slice (default: the first of the pin)")
     words = "of a life of wear: show one cycle on the profile after N cycles (default: the last one stored)"
     _option(plot, "--after", "N", words, literal)
     for name, option in KIND_OPTIONS.items():

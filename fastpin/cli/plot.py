@@ -4,46 +4,56 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-from fastpin import casefile, figures, solver, storage
+from fastpin import casefile, figures, joints, solver, storage
+from fastpin.assess.outputs import Follow
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_files
 from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS, kinds_with
-from fastpin.model.case import Case
+from fastpin.model.checks import known_name
 from fastpin.model.units import from_units
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draw one kind of figure of a stored result, or of a case file."""
+    """Draw one kind of figure of a stored result, of a joint or a pin in it, or of a case file."""
     if options.result.suffix.lower() == ".toml":
         options.kind = options.kind or "sketch"
         _check(options, "case" in KINDS[options.kind].sources)
-        return _draw(casefile.read_case(options.result), options)
+        _check_of_joint(options, False)
+        case = casefile.read_case(options.result)
+        return _draw(options, case.title, case.problem.unit_system, lambda progress: figures.states.Subject(case))
     with storage.stored.StoredResult(options.result) as stored:
-        options.kind = options.kind or ("scar" if stored.is_life else "tractions")
+        is_joint = stored.is_joint
+        usual = ("holes" if options.pin is None else "tractions") if is_joint else "scar" if stored.is_life else None
+        options.kind = options.kind or usual or "tractions"
         _check(options, False)
-        return _draw(stored, options)
+        _check_of_joint(options, is_joint)
+        if is_joint:
+            return _draw_of_joint(options, stored)
+        title = seat_title(stored.case.title) if options.interface == "seat" else stored.case.title
+
+        def subject(progress: Follow) -> figures.states.Subject:
+            if options.interface == "seat":
+                return figures.states.Subject(seat_of(stored))
+            return figures.states.stored_subject(stored, progress)
+
+        return _draw(options, title, stored.case.problem.unit_system, subject)
 
 
-def _draw(shown: Case | storage.stored.StoredResult, options: argparse.Namespace) -> int:
-    """Draw the figure, and say which part of the result it shows."""
+def _draw(options: argparse.Namespace, title: str, system: str, make: Callable[[Follow], Any]) -> int:
+    """Draw the figure of the subject that ``make(progress)`` returns, and say which part of the result it shows."""
     figure = Path(f"{options.kind}.png") if options.output is None else options.output
-    case = shown if isinstance(shown, Case) else shown.case
     if options.depth is not None and options.kind != "profile":  # which takes radii
-        options.depth = from_units(options.depth, "length", case.problem.unit_system)
-    title = seat_title(case.title) if options.interface == "seat" else case.title
+        options.depth = from_units(options.depth, "length", system)
     check_outputs({"--output": figure, "--csv": options.csv}, figures=("--output",))
     names = [*(name for name in KINDS[options.kind].options if name != "csv"), "after"]
     given = {name: value for name in names if (value := getattr(options, name)) is not None}
     progress_bar = Bar(1.0, "damage of the spectrum")
-    if isinstance(shown, Case):
-        subject = figures.states.Subject(shown)
-    elif options.interface == "seat":
-        subject = figures.states.Subject(seat_of(shown))
-    else:
-        subject = figures.states.stored_subject(shown, progress_to(progress_bar))
+    subject = make(progress_to(progress_bar))
     with as_options(given), progress_bar:  # the bar moves for the damage of a spectrum only
         plot = figures.plotting.plot_of(options.kind, subject, **given)
     say(*plot.notes)
@@ -53,6 +63,46 @@ def _draw(shown: Case | storage.stored.StoredResult, options: argparse.Namespace
     if code == 0:
         say(f"wrote {figure}" + ("" if options.csv is None else f" and {options.csv}"))
     return code
+
+
+def _check_of_joint(options: argparse.Namespace, is_joint: bool) -> None:
+    """Refuse options that have no effect on a joint of several pins, or on anything else."""
+    if is_joint and options.interface != "pin":
+        raise InputError("--interface", "is for a bush that slips in its seat, not for a joint of several pins")
+    for name in ("pin", "plate"):
+        if getattr(options, name) is not None and not is_joint:
+            raise InputError(flag(name), "is for the result of a joint of several pins")
+        if getattr(options, name) is not None and "joint" in KINDS[options.kind].sources:
+            raise InputError(flag(name), f"has no effect on {options.kind}, which shows the whole joint")
+
+
+def _draw_of_joint(options: argparse.Namespace, stored: storage.stored.StoredResult) -> int:
+    """Draw the whole joint, or a pin in a plate."""
+    case, result = storage.joint_files.case_of(stored), storage.joint_files.joint_of(stored)
+    kind = KINDS[options.kind]
+    if "joint" in kind.sources:
+        return _draw(options, case.title, case.joint.unit_system, lambda _: figures.joint.JointSubject(result))
+    pin, plate = hole_of(case.joint, options, f"is missing: {options.kind} shows one pin in one plate")
+    with as_options(("pin", "plate")):
+        held = storage.holes.HeldHole(case, result, pin, plate, kind.whole and case.joint.has_outline(plate))
+    title = ", ".join(filter(None, [case.title, f"{pin} in {plate}"]))
+
+    def subject(progress: Follow) -> figures.states.Subject:
+        return figures.states.Subject(held.result, held, progress)
+
+    return _draw(options, title, case.joint.unit_system, subject)
+
+
+def hole_of(joint: joints.Joint, options: argparse.Namespace, missing: str) -> tuple[str, str]:
+    """Return the names of the pin and the plate that options choose; of a pin alone its first plate.
+
+    Without a pin raise :class:`InputError` with the words `missing`.
+    """
+    if options.pin is None:
+        raise InputError("--pin", f"{missing}; the pins are {', '.join(pin.name for pin in joint.pins)}")
+    known_name("--pin", options.pin, [pin.name for pin in joint.pins])
+    first = next(pin.plates[0] for pin in joint.pins if pin.name == options.pin)
+    return options.pin, first if options.plate is None else options.plate
 
 
 def _check(options: argparse.Namespace, is_case: bool) -> None:

@@ -1,3 +1,4 @@
+from . import joint as joint
 from . import load_cycle as load_cycle
 from . import plotting as plotting
 from . import sheet as sheet
@@ -15,7 +16,9 @@ from .fatigue import plot_fatigue as plot_fatigue
 from .history import plot_gap as plot_gap
 from .history import plot_history as plot_history
 from .identify import plot_identified as plot_identified
+from .joint import plot_displacement as plot_displacement
 from .joint import plot_joint as plot_joint
+from .joint import plot_share_bars as plot_share_bars
 from .joint import plot_shares as plot_shares
 from .laminates import plot_stiffness as plot_stiffness
 from .laminates import plot_strength as plot_strength

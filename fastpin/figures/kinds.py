@@ -46,6 +46,7 @@ KIND_OPTIONS = {
     "sketch": KindOption("tractions: add a small sketch of the joint", type="flag"),
     "bars": KindOption("tractions: draw the error bars as bands (run --error-bars)", type="flag"),
     "body": KindOption("plate, pin, seat (the plate round a bush), or (hoop and map) both"),
+    "at": KindOption("holes: load point (default: the last)", "N", "number"),
     "component": KindOption(
         "map: von_mises (default), largest, hoop, radial, shear, sxx, ..., or utilization of a laminate"
     ),
@@ -77,29 +78,41 @@ class Kind(NamedTuple):
     options : tuple of str
         Names of :data:`KIND_OPTIONS`, and "csv" if the figure has numbers.
     sources : tuple of str
-        What the figure may show: "result" is the result of a run, "life" a life of wear, "case" a case file.
+        What the figure may show, keys of :data:`SOURCES`.
+    whole : bool
+        Whether it shows a plate of any outline beyond the hole.
     """
 
     file: str
     words: str
     options: tuple[str, ...]
-    sources: tuple[str, ...] = ("result", "life")
+    sources: tuple[str, ...] = ("result", "life", "hole")
+    whole: bool = False
 
 
-SOURCES = {"result": "the result of a run", "life": "a life of wear", "case": "a case file"}
+SOURCES = {
+    "result": "the result of a run",
+    "life": "a life of wear",
+    "case": "a case file",
+    "joint": "a joint of several pins",
+    "hole": "a pin in a plate of a joint",
+}
 """Words for what a figure may show."""
 
 
 KINDS = {
     "tractions": Kind("tractions", "", ("states", "csv", "sketch", "bars")),
     "stick-slip": Kind("stick_slip", "map of stick and slip over load points", ("states", "csv")),
-    "sketch": Kind("sketch", "pin, plate and loads", ("states",), sources=("result", "life", "case")),
+    "sketch": Kind("sketch", "pin, plate and loads", ("states",), sources=("result", "life", "case", "hole")),
     "gap": Kind("history", "initial gap and friction along the rim", ("csv",), sources=("result", "life", "case")),
     "hoop": Kind("stress", "hoop stress round hole and pin", ("states", "csv", "body")),
-    "outline": Kind("stress", "hoop stress along the edges of a plate of any outline", ("states", "csv")),
+    "outline": Kind("stress", "hoop stress along the edges of a plate of any outline", ("states", "csv"), whole=True),
     "profile": Kind("stress", "stresses below the edge", ("states", "csv", "body", "angle", "depth")),
     "map": Kind(
-        "stress", "one component of the stress in both bodies", ("states", "csv", "body", "component", "extent")
+        "stress",
+        "one component of the stress in both bodies",
+        ("states", "csv", "body", "component", "extent"),
+        whole=True,
     ),
     "stiffness": Kind("laminates", "moduli of a laminate by direction", ("csv",), sources=("result", "life", "case")),
     "strength": Kind(
@@ -108,13 +121,20 @@ KINDS = {
     "cycles": Kind("cycles", "changes in each cycle", ("csv",), sources=("result",)),
     "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv", "corners")),
     "loops": Kind(
-        "load_cycle", "hysteresis loops of the last cycle, or of several", ("csv", "cycle", "corners", "abscissa")
+        "load_cycle",
+        "hysteresis loops of the last cycle, or of several",
+        ("csv", "cycle", "corners", "abscissa"),
+        ("result", "life"),
     ),
     "fatigue": Kind(
         "fatigue",
         "a criterion along the edge over the last cycle, or damage",
         ("csv", "body", "criterion", "depth"),
     ),
+    "holes": Kind("joint", "a joint: hoop stress, contact and forces in all holes", ("at",), ("joint",)),
+    "shares": Kind("joint", "a joint: the force of each pin at all load points", ("csv",), ("joint",)),
+    "share-bars": Kind("joint", "a joint: the share of each pin in the force on each plate", ("csv",), ("joint",)),
+    "displacement": Kind("joint", "a joint: loads over the displacement of plates", ("csv",), ("joint",)),
     "scar": Kind("scar", "a life of wear: worn profile and pressure after some cycles", ("csv",), sources=("life",)),
     "wear": Kind(
         "scar", "a life of wear: volume, depth, dissipation, pressure over the cycles", ("csv",), sources=("life",)

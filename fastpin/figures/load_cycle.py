@@ -58,6 +58,8 @@ def one_or_several(cycle: LoadCycle | Result | Sequence[LoadCycle]) -> list[Load
 
 def slip_plot(subject: Subject, corners: str | None = None) -> Plot:
     """Return slip and friction energy of the last cycle, or from one corner to another such as "21-101"."""
+    if corners is None and subject.span is not None:
+        corners = "{}-{}".format(*subject.span)
     if corners is not None:
         return slip_of(_between(subject, corners))
     return slip_of(subject.part(*span_of(with_cycles(subject).cycles[-1])).cycle())

@@ -9,7 +9,7 @@ import io
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -27,8 +27,11 @@ from fastpin.solver import Result
 from fastpin.states.state import State
 from fastpin.wear_lives import WearResult
 
+if TYPE_CHECKING:  # joints are compiled code
+    from fastpin.figures.joint import JointSubject
 
-def plot_of(kind: str, subject: Subject, after: float | None = None, **options: Any) -> Plot:
+
+def plot_of(kind: str, subject: Subject | JointSubject, after: float | None = None, **options: Any) -> Plot:
     """Return the figure of a kind of :data:`fastpin.figures.kinds.KINDS`. The options are keywords of its function.
 
     Of a life of wear the figure shows one cycle on the profile `after` so many cycles. Without `after`, and without a
@@ -50,7 +53,7 @@ def plot_of(kind: str, subject: Subject, after: float | None = None, **options: 
             raise InputError("after", f"chooses a profile of a life of wear, but this is {SOURCES[subject.source]}")
     on_profile = ""
     if subject.source == "life" and shows_states and (after is not None or "states" not in options):
-        life = with_stored_cycles(subject)
+        life = with_stored_cycles(subject)  # type: ignore[arg-type]
         after = life[-1].cycle if after is None else after
         subject, on_profile = Subject(Result.of_life(life, after)), f"after {cycles_text(after)}"
     module = importlib.import_module(f"fastpin.figures.{KINDS[kind].file}")

@@ -390,9 +390,9 @@ class Subject:
     Parameters
     ----------
     shown : Result, State, sequence of State, WearResult, Problem or Case
-    held : StoredResult, optional
-        The stored result of a run, of which `shown` is the result without its states. Only those that a figure shows
-        are read.
+    held : Held, optional
+        The stored result of a run, or a hole of a joint, of which `shown` is the result without its states. Only those
+        that a figure shows are read.
     progress : callable, optional
         ``progress(done, total)`` follows figures that take long to compute.
 
@@ -403,7 +403,7 @@ class Subject:
     """
 
     def __init__(
-        self, shown: Shown, held: StoredResult | None = None, progress: Callable[[float, float], None] | None = None
+        self, shown: Shown, held: Held | None = None, progress: Callable[[float, float], None] | None = None
     ) -> None:
         self.life = shown if isinstance(shown, WearResult) else None
         self.shown = Result.of_life(shown) if isinstance(shown, WearResult) else shown
@@ -412,7 +412,14 @@ class Subject:
     @property
     def source(self) -> str:
         """A key of :data:`fastpin.figures.kinds.SOURCES`."""
-        return "case" if isinstance(self.shown, Problem | Case) else "result" if self.life is None else "life"
+        if isinstance(self.shown, Problem | Case):
+            return "case"
+        return "life" if self.life is not None else "result" if self._held is None else self._held.source
+
+    @property
+    def span(self) -> tuple[int, int] | None:
+        """The corners between which slip is shown unless others are given, see :class:`fastpin.storage.held.Held`."""
+        return None if self._held is None else self._held.span
 
     @property
     def problem(self) -> Problem:
@@ -444,7 +451,7 @@ class Subject:
 
     def beside(self, name: str) -> Any:
         """Return the section of a stored case with this name, such as "fatigue"; None if it is not known."""
-        return None if self._held is None else beside_of(self._held.case).get(name)
+        return None if self._held is None else beside_of(self._held.case).get(name)  # type: ignore[attr-defined]
 
 
 def of_states(result: Sequence[State] | State) -> Subject:

@@ -465,6 +465,11 @@ class Joint:
         of_pins = tuple(f"{pin.name}.{axis}" for pin in self.pins for axis in "xy")
         return sum((plate.load_names for plate in self.plates), ()) + of_pins
 
+    def has_outline(self, plate: str) -> bool:
+        """Whether a plate has an outline and no slices, so that its stress is known everywhere."""
+        known = [each.name for each in self.plates if not each.is_infinite and each.slices == 1]
+        return plate in known
+
     def is_stress(self, load: str) -> bool:
         """Whether a load is a stress, Pa. The others are forces, N."""
         checks.known_name("load", load, self.load_names)

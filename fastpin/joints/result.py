@@ -242,15 +242,25 @@ class JointResult(Sequence[JointState]):
         """
         place = self.joint.place(pin, plate)
         states = list(self.states.section(place)) if self.states else []
-        if not true_or_false("whole", whole):
-            return states
+        return [*map(self.knowing_plate(pin, plate), states)] if true_or_false("whole", whole) else states
+
+    def knowing_plate(self, pin: str, plate: str) -> Callable[[State], State]:
+        """A function that returns a state of a pin in a plate as one that knows the whole plate, see :meth:`of`.
+
+        Raises
+        ------
+        InputError
+            If a name is unknown, or the plate is infinite or a slice.
+        """
         lug, pinned = self.joint.lug(pin, plate)
-        outline, found = json.dumps(lug.document()), []
-        for state in states:
+        outline = json.dumps(lug.document())
+
+        def knowing(state: State) -> State:
             hole: Any = state.problem.plate_body  # a HoleInPlate
             body = replace(hole, outline=outline, pinned=pinned)
-            found.append(replace(state, problem=replace(state.problem, plate_body=body)))
-        return found
+            return replace(state, problem=replace(state.problem, plate_body=body))
+
+        return knowing
 
     def shares(self, plate: str) -> dict[str, np.ndarray]:
         """The share of each pin in the force on a plate at every state, by name; see :meth:`JointState.shares`."""
@@ -277,11 +287,11 @@ class JointResult(Sequence[JointState]):
 
         A cycle is the shortest run of corners at the end of the history that repeats the loads of the corners before.
         """
-        return tuple(self.states[place] for place in self._cycle)
+        return tuple(self.states[place] for place in self.last_cycle_places)
 
     @property
-    def _cycle(self) -> range:
-        """The places of the states of the last cycle."""
+    def last_cycle_places(self) -> range:
+        """The places of the states of the :attr:`last_cycle`."""
         length, size = _cycle_length(self._loads), len(self)
         return range(size - length - 1 if length else size, size)
 
@@ -313,7 +323,8 @@ class JointResult(Sequence[JointState]):
         how = FatigueAssessment() if how is None else instance("how", how, FatigueAssessment, "a FatigueAssessment")
         check_callable("progress", progress)
         check_fatigue(self.joint, how, self._loads)
-        places, known = range(len(self)) if how.over == "history" else self._cycle, _assessed_sections(self.joint, how)
+        places = range(len(self)) if how.over == "history" else self.last_cycle_places
+        known = _assessed_sections(self.joint, how)
         found: list[SectionDamage] = []
         for done, place in enumerate(known):
             pin, plate = self.joint.sections[place]
@@ -350,7 +361,7 @@ class JointResult(Sequence[JointState]):
         """
         instance("crack", crack, SectionCrack, "a SectionCrack")
         check_crack(self.joint, crack, len(self))
-        cycle, states = self._cycle, self.of(crack.pin, crack.plate, whole=True)
+        cycle, states = self.last_cycle_places, self.of(crack.pin, crack.plate, whole=True)
         return planned_growth(states[-len(cycle) :], crack.how, not cycle, progress)
 
     def margins(self, progress: Callable[[float, float], None] | None = None) -> list[SectionMargin]:

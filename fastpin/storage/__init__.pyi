@@ -1,3 +1,4 @@
+from . import holes as holes
 from . import joint_files as joint_files
 from . import stored as stored
 from . import wear_files as wear_files

@@ -107,6 +107,11 @@ def no_figure(field: str, path: Path) -> InputError:
 
 def check_exists(path: Path) -> None:
     """Raise :class:`InputError` if `path` is not a regular file."""
+    if (path / INDEX).is_file():
+        words = (
+            "is the directory of a sweep: fastpin report writes its page, fastpin sweep with its plan prints tables, "
+        )
+        raise InputError(str(path), f"{words}and fastpin show {path / 'results' / 'ID.h5'} a run")
     if not path.is_file():
         raise InputError(str(path), "is a directory, a file is needed" if path.is_dir() else "there is no such file")
 

@@ -29,7 +29,11 @@ class Held:
         Perhaps without its states.
     path : Path or None
         Its file.
+    source : str
+        A key of :data:`fastpin.figures.kinds.SOURCES`.
     """
+
+    source = "result"
 
     def __init__(self, result: Result, path: Path | None = None) -> None:
         self.result, self.path = result, path
@@ -72,6 +76,11 @@ class Held:
     def pressure(self) -> float:
         """The largest pressure at a node over all states, Pa."""
         return max((float(state.pressure.max()) for state in self.result), default=0.0)
+
+    @property
+    def span(self) -> tuple[int, int] | None:
+        """The corners between which the slip of a pin in a joint is shown: its history itself tells no cycle."""
+        return None
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Return the states at these places, in increasing order."""

@@ -42,7 +42,7 @@ def test_bash_completes_commands_options_choices_and_files() -> None:
 
     assert completed("sw") == ["sweep"]
     assert completed("run", "--nod") == ["--nodes"]
-    assert completed("plot", "a.h5", "ho") == ["hoop"]
+    assert completed("plot", "a.h5", "hoo") == ["hoop"]
     assert completed("check", "ca") == ["case.toml"]
 
 

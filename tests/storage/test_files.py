@@ -12,7 +12,7 @@ import pytest
 
 from fastpin.errors import InputError, OutputError
 from fastpin.model.inputs import note_input, remembered_inputs
-from fastpin.storage.files import INDEX, check_writable, forget_temporaries, replacing
+from fastpin.storage.files import INDEX, check_exists, check_writable, forget_temporaries, replacing
 
 
 def test_replacing_follows_links_and_keeps_ordinary_permissions(tmp_path: Path) -> None:
@@ -100,6 +100,12 @@ def test_a_file_that_becomes_a_result_meanwhile_is_kept(tmp_path: Path) -> None:
 def test_a_directory_is_no_name_of_an_output(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="is a directory, a file name is needed"):
         check_writable(tmp_path)
+
+
+def test_the_directory_of_a_sweep_is_for_other_commands(tmp_path: Path) -> None:
+    (tmp_path / INDEX).touch()
+    with pytest.raises(InputError, match="is the directory of a sweep: fastpin report writes its page"):
+        check_exists(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["a.h5.journal", "a.h5.checkpoint", "lock", f"{INDEX}-journal"])
