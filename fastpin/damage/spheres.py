@@ -87,7 +87,8 @@ def _smallest(points, support, size, chosen, matrix, centre, best):
             farthest = max(farthest, _distance(points, support[k], centre))
         if farthest < radius:
             radius, bits = farthest, subset
-            best[:] = centre
+            for k in range(points.shape[1]):
+                best[k] = centre[k]
     return bits
 
 

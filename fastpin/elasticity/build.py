@@ -53,10 +53,8 @@ def latest_system(problem: Problem, grid: Grid, force: float) -> System:
             if known.scales.force == force and known.grid.closed == grid.closed
             and np.array_equal(known.grid.theta, grid.theta)
         ]  # fmt: skip
-    system = next((known for known in alike if known.problem == problem), None)
-    if system is None:
-        changed = (known.changed(problem) for known in alike)
-        system = next(filter(None, changed), None) or System.build(problem, grid, force)
-    with _LOCK:  # four: of a history, of its coarse run, and the same two for its error bars or the run before
-        _KEPT[:] = [system, *(known for known in _KEPT if known is not system)][:4]
+    same, changed = (known for known in alike if known.problem == problem), (known.changed(problem) for known in alike)
+    system = next(same, None) or next(filter(None, changed), None) or System.build(problem, grid, force)
+    with _LOCK:  # eight: of a history, of its coarse run, the same two for its error bars, and those of the runs before
+        _KEPT[:] = [system, *(known for known in _KEPT if known is not system)][:8]
     return system

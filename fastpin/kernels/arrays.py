@@ -20,6 +20,8 @@ class Tableau(NamedTuple):
     source, slot : ndarray of int, shape (room,)
     delta : ndarray, shape (room,)
         The three numbers of each update.
+    factors : ndarray, shape (4,)
+        Memory for the factors of four updates of a column.
     rates : ndarray, shape (2n+m,)
         Rates of the dependent variables and of the pin's motion, per unit of the step.
     order : ndarray of int, shape (2n+m,)
@@ -41,6 +43,7 @@ class Tableau(NamedTuple):
     source: np.ndarray
     slot: np.ndarray
     delta: np.ndarray
+    factors: np.ndarray
     rates: np.ndarray
     order: np.ndarray
     tied: np.ndarray

@@ -278,8 +278,9 @@ def _respond(tableau, updates, given, values):
         if n <= i < 2 * n:
             acting += tableau.drag[i - n] * given[i - n]
         if acting != 0.0:
+            column = tableau.matrix[:, order[i]]  # taken first: the loop over it is vector code
             for row in range(size):
-                placed[row] += acting * tableau.matrix[row, order[i]]
+                placed[row] += acting * column[row]
     for i in range(size):
         values[i] = placed[order[i]]
     for i in range(n):
@@ -299,8 +300,7 @@ def _respond(tableau, updates, given, values):
 def _multiply(operator, values, elastic):
     """Set `elastic` (2n,) to gap and slip of the tractions of `values`."""
     n = values.status.size
-    for row in range(2 * n):
-        elastic[row] = 0.0
+    elastic[:] = 0.0
     for i in range(n):
         if values.status[i] != OPEN:
             for row in range(2 * n):

@@ -87,10 +87,10 @@ def _column(tableau, updates, p, out):
             out[i] = matrix[i, p]
     else:
         _held_column(tableau, p, out)
-    first, factors = tableau.fresh[p // tableau.width], np.zeros(4)
-    fours = updates - (updates - first) % 4
-    for k in range(first, fours, 4):  # four in a pass: the column is read and written once
-        for later in range(4):
+    k, factors = tableau.fresh[p // tableau.width], tableau.factors
+    while k < updates:
+        several = 4 if k + 4 <= updates else 1  # four in a pass: the column is read and written once
+        for later in range(several):
             factor, source = 0.0, tableau.source[k + later]
             if source >= 0:
                 factor = out[source]
@@ -100,18 +100,13 @@ def _column(tableau, updates, p, out):
                 factor += tableau.delta[k + later]
             factors[later] = factor
         a, b, c, d = factors[0], factors[1], factors[2], factors[3]
-        if a != 0.0 or b != 0.0 or c != 0.0 or d != 0.0:
+        if several == 1:
+            for i in range(out.size if a != 0.0 else 0):
+                out[i] += a * left[i, k]
+        elif a != 0.0 or b != 0.0 or c != 0.0 or d != 0.0:
             for i in range(out.size):
                 out[i] = (((out[i] + a * left[i, k]) + b * left[i, k + 1]) + c * left[i, k + 2]) + d * left[i, k + 3]
-    for k in range(fours, updates):
-        factor = 0.0
-        if tableau.source[k] >= 0:
-            factor = out[tableau.source[k]]
-        if tableau.slot[k] == p:
-            factor += tableau.delta[k]
-        if factor != 0.0:
-            for i in range(out.size):
-                out[i] += factor * left[i, k]
+        k += several
 
 
 @inner
@@ -508,16 +503,18 @@ def follow(tableau, contact, load, queue, friction, fixed, typical, stop, most_e
         counts[SETTLED], the statuses hold until the next event.
     """
     counts, sums, rates = queue.counts, queue.sums, tableau.rates
-    settled = counts[SETTLED] != 0
+    settled, measured, traction_tol, length_tol = counts[SETTLED] != 0, -1, 0.0, 0.0
     counts[SETTLED] = 0
     while True:
         code = _apply_queue(tableau, contact, queue, friction, typical, fixed)
         if code != REACHED:
             return code
-        traction_rate, length_rate = _rate_scales(rates, contact, friction)
-        traction_tol, length_tol = 1e-11 * traction_rate, 1e-11 * length_rate  # smaller rates are zero
-        if not (np.isfinite(traction_rate) and np.isfinite(length_rate)):
-            return NO_SUPPORT
+        if counts[UPDATES] != measured:  # the rates have changed
+            measured = counts[UPDATES]
+            traction_rate, length_rate = _rate_scales(rates, contact, friction)
+            traction_tol, length_tol = 1e-11 * traction_rate, 1e-11 * length_rate  # smaller rates are zero
+            if not (np.isfinite(traction_rate) and np.isfinite(length_rate)):
+                return NO_SUPPORT
 
         # Settle the statuses: friction first, then closing, then opening.
         if not settled:

@@ -100,7 +100,10 @@ class Kernel(KernelSource):
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a kernel: the decorator of every kernel."""
+    """Compile a kernel: the decorator of every kernel. It returns numbers only.
+
+    A kernel that makes no arrays counts no references to them. It can't copy an array to a slice.
+    """
     return function if PLAIN else Kernel(function, inner=False)
 
 

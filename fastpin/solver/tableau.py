@@ -54,8 +54,8 @@ class TableauMemory:
         (source, slot), delta = np.empty((2, self.left.shape[1]), dtype=np.int64), np.empty(self.left.shape[1])
         self.blank = Tableau(
             matrix=self.matrix, fresh=np.zeros(0, dtype=np.int64), left=self.left, source=source, slot=slot,
-            delta=delta, rates=np.zeros(0), order=np.zeros(0, dtype=np.int64), tied=np.zeros(0), drag=np.zeros(0),
-            chunk=CHUNK, width=WIDTH,
+            delta=delta, factors=np.zeros(4), rates=np.zeros(0), order=np.zeros(0, dtype=np.int64), tied=np.zeros(0),
+            drag=np.zeros(0), chunk=CHUNK, width=WIDTH,
         )  # fmt: skip
         self._sticking: tuple[tuple[System, bytes] | None, StickingRun | None] = None, None
         self._dense: tuple[tuple[System, bytes] | None, DenseUnknowns | None] = None, None

@@ -86,6 +86,7 @@ def empty_tableau(matrix, rates):
         source=np.zeros(room, dtype=np.int64),
         slot=np.zeros(room, dtype=np.int64),
         delta=np.zeros(room),
+        factors=np.zeros(4),
         rates=rates.copy(),
         order=np.zeros(0, dtype=np.int64),
         tied=np.zeros(0),

@@ -50,7 +50,7 @@ def test_the_start_of_a_step(way, rough):
         empty = np.zeros(0, dtype=np.int64)
         tableau = Tableau(
             matrix=table, order=order, fresh=empty, left=np.zeros((size, 0), order="F"), source=empty, slot=empty,
-            delta=np.zeros(0), rates=np.full(size, np.nan), chunk=1, width=1, **numbers,
+            delta=np.zeros(0), factors=np.zeros(4), rates=np.full(size, np.nan), chunk=1, width=1, **numbers,
         )  # fmt: skip
         assert held.begin(table, stack, contact, friction, displaced, forces, tableau) == turned
         assert tableau.rates == pytest.approx(rates, rel=1e-12, abs=1e-13)

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.kernels import exchange, influence
+from fastpin.kernels import conditions, exchange, influence
+from fastpin.kernels.arrays import ContactValues
 from fastpin.runtime import jit, machine
 from tests.support import small_kernels
 from tests.support.processes import finished, python
@@ -166,6 +167,17 @@ def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
         loaded(*arguments)
     assert (np.stack([direct, cross]) == np.stack(expected)).all()
     assert [sys.getrefcount(one) for one in arguments] == before
+
+
+def test_kernels_that_count_no_references_hold_no_array() -> None:
+    assert not conditions.beyond_bounds.makes_arrays
+    assert influence._columns.makes_arrays
+    values = [ContactValues(*np.zeros((4, 3)), np.zeros(3, dtype=np.int8), np.zeros(3)) for _ in range(2)]
+    arrays = [array for each in values for array in each]
+    before = [sys.getrefcount(array) for array in arrays]
+    for _ in range(100):
+        assert conditions.beyond_bounds(*values) == (0.0, 0.0)
+    assert [sys.getrefcount(array) for array in arrays] == before
 
 
 @pytest.mark.parametrize("file", sorted(path.stem for path in (PACKAGE / "kernels").glob("[a-z]*.py")))
