@@ -177,8 +177,8 @@ class BaseJoint:
 
     def locate(
         self, places: Mapping[str, KeyPath], values: Mapping[str, Any], place: KeyPath, message: str
-    ) -> tuple[KeyPath, str]:
-        """Return the place of a run's fault in the plan, and its message there."""
+    ) -> tuple[KeyPath, str] | None:
+        """Return the place of a run's fault in the plan, and its message there; None if it is one of the file."""
         section, *rest = place or ("",)
         if section in ("pin", "plate") and rest:
             part = self.names(str(section))[int(rest[0])]
@@ -188,8 +188,7 @@ class BaseJoint:
         for field in (field for start in starts for field in values if f"{field}.".startswith(f"{start}.")):
             reason = message.removeprefix(f"{rest[-1] if rest else section}: ").removeprefix(f"{field}: ")
             return places[field], f"{field}: {reason}"
-        line = self.text.line(*place)
-        return ("case",), f"{self.name}{f', line {line}' if line else ''}: {message}"
+        return None
 
     def beside(self, varied: Collection[str] = ()) -> dict[str, Any]:
         """What outcomes are checked against, by name: the content of the file."""

@@ -95,7 +95,7 @@ class Base(Protocol):
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Any]: ...
     def locate(
         self, places: Mapping[str, KeyPath], values: Mapping[str, Any], place: KeyPath, message: str
-    ) -> tuple[KeyPath, str]: ...
+    ) -> tuple[KeyPath, str] | None: ...
     def beside(self, varied: Collection[str] = ()) -> dict[str, Any]: ...
     def nominal(self, case: Any, name: str) -> float | None: ...
     def is_idle(self, case: Any, factor: str) -> bool: ...
@@ -537,7 +537,8 @@ def with_points(
             faults.setdefault((sites[pair[1]], f"{pair[1]}: can't be given together with {pair[0]}"), []).append(values)
             continue
         text, case = base.vary(values)
-        for fault in {base.locate(_sites(places, row), values, *placed): None for placed in text.placed}:
+        sites = _sites(places, row)
+        for fault in dict.fromkeys(_located(base, sites, values, *placed) for placed in text.placed):
             faults.setdefault(fault, []).append(values)
         if case is not None and not text.placed:
             for doubt in base.doubts(case):
@@ -556,6 +557,15 @@ def with_points(
     if case is not None:
         found += [doubt for wear in wears for doubt in wear_doubts(case.problem, wear)]
     return replace(plan, points=points, doubts=found, _cases=cases)
+
+
+def _located(
+    base: Base, sites: Mapping[str, KeyPath], values: Mapping[str, Any], place: KeyPath, message: str
+) -> tuple[KeyPath, str]:
+    """The place of a run's fault in the plan, and its message: at a field of the run, or at the name of the case."""
+    line = base.text.line(*place)
+    of_case = ("case",), f"{base.name}{f', line {line}' if line else ''}: {message}"
+    return base.locate(sites, values, place, message) or of_case
 
 
 def _sites(places: dict[str, KeyPath], row: PlanRow) -> dict[str, KeyPath]:

@@ -3,49 +3,34 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from fastpin import joints, storage
 from fastpin.model.case import Case, beside_of
-from fastpin.solver import SolveError, solve
+from fastpin.solver import solve
 from fastpin.solver.result import Result, without_restart
 from fastpin.storage import store
 from fastpin.studies.run_end import JOINT_FIGURES, figures_of, key_bars, key_figures
-
-
-class Solved(NamedTuple):
-    """A solved case.
-
-    Attributes
-    ----------
-    result : Result or JointResult
-        Perhaps without a state.
-    reason : str or None
-        Why it is incomplete.
-    """
-
-    result: Any
-    reason: str | None
 
 
 class OfCases:
     """Runs of one pin."""
 
     @staticmethod
-    def solve(case: Case) -> Solved:
+    def solve(case: Case) -> Result:
         """Follow the history."""
-        try:
-            return Solved(solve(case.problem, case.history, **case.options.keywords()), None)
-        except SolveError as error:
-            return Solved(error.result, str(error))
+        return solve(case.problem, case.history, **case.options.keywords())
 
     @staticmethod
-    def keep(case: Case, solved: Solved, path: str, most: int) -> bytes | None:
-        """Return the packed result. A result of more than `most` bytes is written to a file, and None is returned."""
-        result, sections = solved.result, beside_of(case)
-        content = store.pack(result, solved.reason, most, sections)
+    def keep(case: Case, result: Result, reason: str | None, path: str, most: int) -> bytes | None:
+        """Return the packed result, with the `reason` why it is incomplete.
+
+        A result of more than `most` bytes is written to a file, and None is returned.
+        """
+        sections = beside_of(case)
+        content = store.pack(result, reason, most, sections)
         if content is None:
-            store.save(result, path, error=solved.reason, restart=False, sections=sections)
+            store.save(result, path, error=reason, restart=False, sections=sections)
         return content
 
     @staticmethod
@@ -74,18 +59,16 @@ class OfJoints:
     """Runs of joints of several pins; see :class:`OfCases`."""
 
     @staticmethod
-    def solve(case: joints.JointFile) -> Solved:
+    def solve(case: joints.JointFile) -> joints.JointResult:
         """Follow the history."""
-        try:
-            result = joints.solve_joint(case.joint, case.corners, nodes=case.nodes, harmonics=case.harmonics)
-            return Solved(result, None)
-        except SolveError as error:
-            return Solved(error.result, str(error))
+        return joints.solve_joint(case.joint, case.corners, nodes=case.nodes, harmonics=case.harmonics)
 
     @staticmethod
-    def keep(case: joints.JointFile, solved: Solved, path: str, most: int) -> bytes | None:
-        """Return the packed result. A result of more than `most` bytes is written to a file, and None is returned."""
-        content = storage.pack_joint(case, solved.result, solved.reason)
+    def keep(
+        case: joints.JointFile, result: joints.JointResult, reason: str | None, path: str, most: int
+    ) -> bytes | None:
+        """Return the packed result, or write it to a file and return None."""
+        content = storage.pack_joint(case, result, reason)
         if len(content) <= most:
             return content
         storage.save_joint(content, Path(path))

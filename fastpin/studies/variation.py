@@ -149,8 +149,8 @@ class BaseCase:
 
     def locate(
         self, places: Mapping[str, KeyPath], values: Mapping[str, Any], place: KeyPath, message: str
-    ) -> tuple[KeyPath, str]:
-        """Return the place of a run's fault in the plan, and its message there.
+    ) -> tuple[KeyPath, str] | None:
+        """Return the place of a run's fault in the plan, and its message there; None if it is one of the case.
 
         `places` are those of the fields in the plan, `values` the fields of the run.
         """
@@ -168,7 +168,7 @@ class BaseCase:
         same_section = [field_name for field_name in values if parts and field_name.split(".")[0] == parts[0]]
         if same_section and (not line or line == self.text.line(*place[:1])):  # The plan makes or changes this section.
             return places[same_section[0]], f"{same_section[0]}: {message}"
-        return ("case",), f"{self.name}{f', line {line}' if line else ''}: {message}"
+        return None
 
     def nominal(self, case: Case, name: str) -> float | None:
         """Return the value of a field in the case: from its text, or else from its materials and defaults."""

@@ -29,7 +29,7 @@ from fastpin.model.checks import instance, items, whole_number
 from fastpin.model.doubts import doubts, doubts_given, warn_of
 from fastpin.runtime.jit import limit_to_one_thread
 from fastpin.runtime.threads import in_one_thread
-from fastpin.solver import Result, solve
+from fastpin.solver import Result, SolveError, solve
 from fastpin.storage import layout
 from fastpin.studies.index import Index
 from fastpin.studies.outcomes import OutcomeValue, check_loadable, pickled, values_in_worker
@@ -269,14 +269,17 @@ def solve_run(run: str, case: Any, path: str, outcomes: PickledOutcomes, setting
     started, host = datetime.now(UTC).isoformat(timespec="milliseconds"), socket.gethostname()
     ended = functools.partial(RunEnd, run, started=started, host=host, versions=layout.versions())
     began, way = time.perf_counter(), RUNS[setting.form]
+    result: Any
     try:
-        solved = way.solve(case)
-        result, reason = solved
+        try:
+            result, reason = way.solve(case), None
+        except SolveError as error:
+            result, reason = error.result, str(error)
         seconds = time.perf_counter() - began
         if result is None or not len(result):
             return ended(reason, seconds=seconds)
         figures, bars = way.figures(result)
-        content = way.keep(case, solved, path, setting.most)
+        content = way.keep(case, result, reason, path, setting.most)
         values = values_in_worker(outcomes, way.judged(result)) if reason is None else {}
         return ended(reason, figures, seconds, outcomes=values, bars=bars, content=content)
     except MemoryError:
