@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fastpin import damage
 from fastpin.assess import outputs
 from fastpin.damage.race import Race
+from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
+from fastpin.model.assessment import FatigueAssessment, assessed_bodies
 from fastpin.model.doubts import doubts_given
 from fastpin.model.points import Body, edge_body
 from fastpin.model.ties import top
@@ -18,7 +23,7 @@ from fastpin.version import __version__
 
 if TYPE_CHECKING:  # they import compiled code, and a plan is read without it
     from fastpin.damage import WornFatigue
-    from fastpin.wear_lives.wear_result import WearResult
+    from fastpin.wear_lives.wear_result import WearResult, WornCycle
 
 COUNTS = outputs.numbers("cycle next_jump solved", "whole")
 """Counts of a :class:`fastpin.wear_lives.WornCycle`."""
@@ -189,19 +194,33 @@ def cycles_curve(result: WearResult) -> outputs.Curve:
     )
 
 
-def damage_curve(damage: WornFatigue) -> outputs.Curve:
+def damages(cycles: Sequence[WornCycle], how: FatigueAssessment | None) -> list[WornFatigue]:
+    """Return the damage of the material that wears, by each criterion and of each body of a section [fatigue].
+
+    Without a section it is Smith, Watson and Topper's. A body without constants for a life is left out; less than two
+    cycles have no damage.
+    """
+    how, found = how or FatigueAssessment(), []
+    for criterion in how.criteria if len(cycles) > 1 else ():
+        with contextlib.suppress(InputError):  # no body has the constants
+            for body in assessed_bodies(cycles[0].states[0].problem, how, criterion):
+                found.append(damage.worn_fatigue(cycles, criterion, body))  # type: ignore[arg-type]
+    return found
+
+
+def damage_curve(found: WornFatigue) -> outputs.Curve:
     """Return the damage of all material points after the last cycle, and whether they are gone."""
-    length = units(damage.problem)["length"]
-    shape = damage.damage[-1].shape
-    angles = np.array([from_bottom(angle) for angle in damage.theta.tolist()])
+    length = units(found.problem)["length"]
+    shape = found.damage[-1].shape
+    angles = np.array([from_bottom(angle) for angle in found.theta.tolist()])
     columns = {
         "angle [deg]": np.broadcast_to(angles, shape),
-        f"depth [{length.name}]": np.broadcast_to(length.factor * damage.depth[:, None], shape),
-        "damage": damage.damage[-1],
-        "worn off": damage.is_gone[-1].astype(float),
-        "cycles to damage 1": np.where(np.isfinite(damage.broken), damage.broken, np.nan),
+        f"depth [{length.name}]": np.broadcast_to(length.factor * found.depth[:, None], shape),
+        "damage": found.damage[-1],
+        "worn off": found.is_gone[-1].astype(float),
+        "cycles to damage 1": np.where(np.isfinite(found.broken), found.broken, np.nan),
     }
-    return outputs.Curve({"body": damage.body}, {name: np.ravel(values) for name, values in columns.items()})
+    return outputs.Curve({"body": found.body}, {name: np.ravel(values) for name, values in columns.items()})
 
 
 def _profile(result: WearResult, values: np.ndarray) -> list[float]:

@@ -13,6 +13,7 @@ from fastpin.cli import terminal
 from fastpin.cli.options import literal
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.errors import InputError
+from fastpin.model.case import Case
 from fastpin.model.keys import CASE
 from fastpin.model.units import from_units
 from fastpin.report.states import way_on
@@ -56,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
     if trouble is not None:
         go_on = options.output is not None and code == terminal.EXIT_INTERRUPTED
         terminal.fail(f"{trouble}{'; continue with the same command and --resume' if go_on else ''}", code)
-    return _write(result, options, case.title, trouble) or code
+    return _write(result, options, case, trouble) or code
 
 
 def show(stored: storage.stored.StoredResult, options: argparse.Namespace) -> int:
@@ -69,22 +70,22 @@ def show(stored: storage.stored.StoredResult, options: argparse.Namespace) -> in
             )
     terminal.check_outputs({"--json": options.json, "--record": options.record})
     life = storage.wear_files.life_of(stored)
-    code = _write(life, options, stored.case.title, error)
+    code = _write(life, options, stored.case, error)
     if not life.complete and options.json != "-":
         why, how = f": {error}" if error else "", way_on(path, error)
         terminal.say(f"note: the life is unfinished{why}{f'; {how}' if how else ''}")
     return code
 
 
-def _write(result: WearResult | None, options: argparse.Namespace, title: str, trouble: str | None) -> int:
+def _write(result: WearResult | None, options: argparse.Namespace, case: Case, trouble: str | None) -> int:
     """Write the files, then print the table."""
     writers: list[tuple[Any, Callable[[Path], object]]] = []
-    lines: list[str] = []
+    title, lines = case.title, list[str]()
     if result is not None:
         rows = [*result.summary().split("\n"), ""] if len(result) else []
         lines = [*([title, ""] if title else []), *rows, assess.wear.reached_line(result)]
     if result is not None and len(result):
-        page = partial(live.record_life, result, title, trouble or "")
+        page = partial(live.record_life, result, title, trouble or "", case.fatigue)
         writers.append((options.record, lambda path: terminal.write_text(path, page())))
     document = partial(assess.wear.document, result, title, trouble)
     return terminal.write_outputs(writers, options.json, document, lambda: lines)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
 from fastpin.assess.outputs import json_ready
-from fastpin.assess.wear import DEBRIS
+from fastpin.assess.wear import DEBRIS, damages
 from fastpin.damage import WornFatigue
 from fastpin.errors import InputError
 from fastpin.live.contact import case_document
@@ -19,6 +18,7 @@ from fastpin.live.page import recorded_page
 from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import MOST_PICTURES
 from fastpin.model import angles, points
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
 from fastpin.model.checks import instance, instances, string, whole_number
 from fastpin.model.history import MAX_CORNERS
@@ -66,7 +66,9 @@ def record_page(case: Case, states: Sequence[State], sentence: str = "") -> str:
     return _recorded(document, chosen[0].theta, sentence, pictures)
 
 
-def record_life(result: WearResult, title: str = "", sentence: str = "") -> str:
+def record_life(
+    result: WearResult, title: str = "", sentence: str = "", fatigue: FatigueAssessment | None = None
+) -> str:
     """The text of an HTML file that shows a life of wear, without server and network.
 
     A slider moves through the stored cycles. If their states are more than
@@ -79,6 +81,8 @@ def record_life(result: WearResult, title: str = "", sentence: str = "") -> str:
     title : str
     sentence : str
         A remark above the page, such as why the life ended early.
+    fatigue : FatigueAssessment, optional
+        Criteria and bodies of the damage; Smith, Watson and Topper's of all bodies unless given.
 
     Raises
     ------
@@ -88,12 +92,14 @@ def record_life(result: WearResult, title: str = "", sentence: str = "") -> str:
     instance("result", result, WearResult, "a fastpin.wear_lives.WearResult")
     string("title", title)
     string("sentence", sentence)
+    if fatigue is not None:
+        instance("fatigue", fatigue, FatigueAssessment, "a FatigueAssessment")
     if not len(result):
         raise InputError("result", "there is no stored cycle to record")
     places = recorded_places(len(result), MOST_PICTURES // len(result[0].states))
     document = case_document(title, result.problem, ControlScales(result.problem, result.history))
     document |= {"doubts": [*document["doubts"], *map(str, result.doubts)]}
-    return _recorded(document, result.theta, sentence, [], life=_life(result, places))
+    return _recorded(document, result.theta, sentence, [], life=_life(result, places, fatigue))
 
 
 def _recorded(
@@ -105,10 +111,10 @@ def _recorded(
     return recorded_page({**recording, "add": pictures, **life})
 
 
-def _life(result: WearResult, places: list[int]) -> dict[str, Any]:
+def _life(result: WearResult, places: list[int], fatigue: FatigueAssessment | None) -> dict[str, Any]:
     """The chosen cycles of a life as the page needs them: pictures, worn depths, numbers and damage."""
     cycles, history, serial = [result[place] for place in places], result.history, itertools.count(1)
-    damages = _damages(result)
+    of_owners = _damages(result, fatigue)
     quantities = {
         "worn volume": ("work per stress", [each.volume for each in cycles]),
         "largest depth": ("displacement", [each.depth for each in cycles]),
@@ -116,7 +122,7 @@ def _life(result: WearResult, places: list[int]) -> dict[str, Any]:
         "largest pressure": ("traction", [each.largest_pressure for each in cycles]),
     } | {
         f"largest damage, {owner}": ("ratio", [found.hot_spots[place].damage for place in places])
-        for owner, found in damages.items()
+        for owner, found in of_owners.items()
     }
     document = {
         "stored": len(result),
@@ -131,7 +137,7 @@ def _life(result: WearResult, places: list[int]) -> dict[str, Any]:
             for each in cycles
         ],
         "quantities": [{"name": name, "kind": kind, "values": values} for name, (kind, values) in quantities.items()],
-        "damage": _damage(damages, places),
+        "damage": _damage(of_owners, places),
     }
     ready: dict[str, Any] = json_ready(document)
     return ready
@@ -148,23 +154,27 @@ def _worn(cycle: WornCycle) -> dict[str, str]:
     return dict(zip(("degrees", "pin", "hole"), map(packed, columns), strict=True))
 
 
-def _damages(result: WearResult) -> dict[str, WornFatigue]:
-    """The damage of the bodies in contact, by their words; without those that have no constants for a life."""
-    found = {}
-    for body in ("pin", "plate"):
-        with suppress(InputError):
-            found[points.edge_body(result.problem, body)] = result.fatigue(body=body)
-    return found
+def _damages(result: WearResult, fatigue: FatigueAssessment | None) -> dict[str, WornFatigue]:
+    """The damage of the bodies in contact, by their words, and by the criterion if there are several."""
+    several = fatigue is not None and len(fatigue.criteria) > 1
+    return {
+        points.edge_body(found.problem, found.body) + f", {found.criterion}" * several: found
+        for found in damages(result, fatigue)
+        if found.body != "seat"
+    }
 
 
-def _damage(damages: dict[str, WornFatigue], places: list[int]) -> dict[str, Any]:
+def _damage(of_owners: dict[str, WornFatigue], places: list[int]) -> dict[str, Any]:
     """The damage of bodies after the chosen cycles as curves: the largest of all depths that are still there.
 
     The angles are those of all bodies, in degrees from the bottom, ascending.
     """
-    words = [f"{owner}, {found.criterion}: {found.words}" for owner, found in damages.items()]
+    words = [
+        f"{points.edge_body(found.problem, found.body)}, {found.criterion}: {found.words}"
+        for found in of_owners.values()
+    ]
     document: dict[str, Any] = {"degrees": "", "words": words, "values": {}}
-    for owner, found in damages.items():
+    for owner, found in of_owners.items():
         degrees = np.array([angles.from_bottom(angle) for angle in found.theta.tolist()])
         order = np.argsort(degrees)
         there = np.where(found.is_gone, 0.0, found.damage).max(axis=1)[:, order]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import math
 from dataclasses import dataclass, field, replace
@@ -16,12 +15,13 @@ import numpy as np
 from fastpin.assess.fatigue import SWT, fatigue_bodies, spectrum_damages
 from fastpin.assess.margins import HEADS, in_order, margin_rows, verdict
 from fastpin.assess.questions import QUESTIONS, all_margins
-from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
+from fastpin.assess.wear import damages
+from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue
 from fastpin.damage.margins import MOST_STOPS, fatigue_margins
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
 from fastpin.model import LOADS, Case, LoadHistory, SolveOptions
-from fastpin.model.points import edge_body, elastic_bodies
+from fastpin.model.points import edge_body
 from fastpin.pages.content import Album, Facts, PageSection, Text
 from fastpin.report.states import stored_rows
 from fastpin.solver import Result
@@ -298,19 +298,11 @@ class Source:
 
     @cached_property
     def worn(self) -> list[WornFatigue]:
-        """Damage over a life of wear, of each body whose material has constants for a life, by each criterion."""
-        found: list[WornFatigue] = []
-        if self.life is None or len(self.life) < 2:
-            return found
+        """Damage over a life of wear, see :func:`fastpin.assess.wear.damages`."""
+        if self.life is None:
+            return []
         cycles = [self.life[place] for place in choice.even_choice(range(len(self.life)), MOST_SUMMED)]
-        bodies = elastic_bodies(self.life.problem)
-        if self.case.fatigue is not None and self.case.fatigue.bodies is not None:
-            bodies = tuple(body for body in bodies if body in self.case.fatigue.bodies)
-        for criterion in self.criteria:
-            for body in bodies:
-                with contextlib.suppress(InputError):  # there are no such constants
-                    found.append(worn_fatigue(cycles, criterion, body))  # type: ignore[arg-type]
-        return found
+        return damages(cycles, self.case.fatigue)
 
     @property
     def criteria(self) -> tuple[str, ...]:

@@ -70,7 +70,7 @@ def only(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 
     def leave(*sections: object) -> None:
         monkeypatch.setattr("fastpin.pages.result.WEAR_SECTIONS", sections)
-        monkeypatch.setattr(source, "elastic_bodies", lambda problem: ())
+        monkeypatch.setattr(source, "damages", lambda cycles, how: [])
 
     return leave
 

@@ -295,6 +295,14 @@ def test_the_live_page_of_a_life_has_the_numbers_of_json(life: Path, cycles: lis
 
 
 @pytest.mark.gate
+def test_the_live_page_of_a_life_has_the_criteria_of_the_case(life: Path) -> None:
+    result, both = fastpin.storage.load_wear(life), ("fatemi-socie", "smith-watson-topper")
+    found = recorded(live.record_life(result, fatigue=FatigueAssessment(both)))["life"]["damage"]
+    assert found["words"] == [f"plate, {name}: {result.fatigue(name).words}" for name in both]
+    assert list(found["values"]) == [f"plate, {name}" for name in both]
+
+
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_the_page_of_a_life_has_the_table_and_the_criterion_of_the_case(
     life: Path, cycles: list[dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
