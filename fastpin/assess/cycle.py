@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
-from fastpin.assess.outputs import ROUNDING, UNKNOWN, WHOLE, Curve, Output, map_of, of_fields
-from fastpin.assess.outputs import document as document_of
+from fastpin.assess.outputs import ROUNDING, UNKNOWN, WHOLE, Curve, Output, document, map_of, of_fields
 from fastpin.model import Problem, angles, loads
 from fastpin.model.units import PLAIN, units
 from fastpin.states.cycles import CYCLE_KINDS, Cycle
@@ -63,7 +61,7 @@ def cycle_line(cycle: LoadCycle) -> str:
     The places of the largest values stand beside them. Values that are rounding beside the sizes of
     :func:`natural_sizes` are 0.
     """
-    natural, found = natural_sizes(cycle), document_of(CYCLE, cycle, {})  # in SI units
+    natural, found = natural_sizes(cycle), document(CYCLE, cycle, {})  # in SI units
     unit = units(cycle.states[0].problem)
 
     def words(name: str, kind: str) -> str:
@@ -91,15 +89,6 @@ def natural_sizes(cycle: LoadCycle) -> dict[str, float]:
     found = [sizes(state) for state in cycle.states]
     largest = {kind: max(each[kind] for each in found) for kind in ("displacement", "traction")}
     return largest | {"energy density": largest["displacement"] * largest["traction"]}
-
-
-def document(cycle: LoadCycle) -> dict[str, Any]:
-    """Return the largest values of a cycle with their places, and its energies, as a dict.
-
-    A value that is not known is NaN. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load;
-    it is not known if only the ends of the cycle were kept.
-    """
-    return document_of(CYCLE, cycle, units(cycle.states[0].problem))
 
 
 def nodes_curve(cycle: LoadCycle) -> Curve:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from fastpin.casefile.materials import read_law
-from fastpin.casefile.toml_text import CaseText, Section
+from fastpin.casefile.toml_text import CaseText, Section, field_defaults
 from fastpin.model.assessment import MINER_RULES, FatigueAssessment
 from fastpin.model.case import BESIDE
 from fastpin.model.crack import CrackGrowth, crack_from
@@ -27,9 +27,8 @@ def read_assessment(
     for chooser, partner in (("method", "length"), ("small_cycles", "knee")):
         if chooser in section:
             values.pop(partner, None)
-    keys, usual = BESIDE["fatigue"].keys, FatigueAssessment()
-    values |= {key: section.value(key) for key in keys if section.value(key) is not None}
-    harmless = {key: getattr(usual, key) for key in keys}
+    values |= {key: value for key in BESIDE["fatigue"].keys if (value := section.value(key)) is not None}
+    harmless = field_defaults(FatigueAssessment)
     if values.get("length") is not None:
         harmless["method"] = "line"  # a wrong method leaves its length unreported, as a wrong rule its knee
     if values.get("reliability") is not None:
@@ -52,16 +51,7 @@ def read_crack(source: CaseText, section: Section, default: Mapping[str, Any] | 
         if key not in values:
             section.report(f"{key} is missing: give the {key} length of the crack, {length}")
     values = {"first": 1e-300, "last": 1e300, **values}
-    harmless = {
-        "first": 1e-300,
-        "last": 1e300,
-        "theta": None,
-        "angle": 0.0,
-        "body": "plate",
-        "residual_stress": None,
-        "place": None,
-    }
-    crack = section.build(crack_from, values, harmless)
+    crack = section.build(crack_from, values, field_defaults(CrackGrowth) | {"first": 1e-300, "last": 1e300})
     return crack if len(source.placed) == faults else None
 
 
@@ -76,8 +66,8 @@ def read_strength(
     if any(name in section for name in LENGTHS):
         values = {name: value for name, value in values.items() if name not in LENGTHS}
     values |= {key: section.value(key) for key in BESIDE["strength"].keys if key in section}
-    harmless: dict[str, Any] = {"criterion": "hashin", "failure": False}
     pair = sum(values.get(name) is not None for name in LENGTHS[1:])
+    harmless: dict[str, Any] = {"criterion": "hashin", "failure": False}
     if pair == 2:
         harmless |= {"distance": None, "tension": 0.0, "compression": 0.0}
     elif not pair:

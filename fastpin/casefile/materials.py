@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from fastpin.casefile.profiles import checked_angle
-from fastpin.casefile.toml_text import CaseText, Inside, Section, parse_text, read_text, written
+from fastpin.casefile.toml_text import CaseText, Inside, Section, field_defaults, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, true_or_false
 from fastpin.model.fatigue import FatigueConstants
@@ -113,7 +113,7 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
     given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
     if source.units != SI and "curve_a" in given and "curve_b" not in given:
         section.report("fatigue: curve_a needs curve_b beside it in a file with units", "fatigue")
-    return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": "", "curve": ""})
+    return inner.build(FatigueConstants, given, field_defaults(FatigueConstants))
 
 
 def read_law(source: CaseText, section: Section, key: str) -> KnownLaw | None:
@@ -135,7 +135,7 @@ def read_law(source: CaseText, section: Section, key: str) -> KnownLaw | None:
         if constant not in inner:
             section.report(f"{key}: {constant} is missing; the law {name} needs {', '.join(needed)}", key)
     values = {constant: inner.value(constant) for constant in allowed if constant in table}
-    harmless = {each.name: 1.0 if each.name in needed else each.default for each in fields(LAWS[name][0])}
+    harmless = field_defaults(LAWS[name][0]) | dict.fromkeys(needed, 1.0)
     found = inner.build(make, {**dict.fromkeys(needed), **values}, harmless)
     return None if found is None else known_law(key, found)
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fastpin.casefile.toml_text import Section
+from fastpin.casefile.toml_text import Section, field_defaults
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.angles import DEGREE, angle_at, meant_degrees
 from fastpin.model.checks import any_text, as_toml, number, unknown_key, whole_number
@@ -242,8 +242,8 @@ def read_wear(section: Section, folder: Path, default: Mapping[str, Any]) -> Wea
     values = {key: value for key, value in default.items() if not (profiles and key in COEFFICIENTS)}
     values |= {key: section.value(key) for key in WEAR_KEYS if key in section}
     values |= {key: Profile.constant(1.0) if profile is None else profile for key, profile in profiles.items()}
-    harmless = {"cycles": MOST_CYCLES, "law": "archard", "at": None, "tolerance": 0.0}
-    wear = section.build(Wear, values, harmless | dict.fromkeys(COEFFICIENTS, 1.0))
+    harmless = field_defaults(Wear) | dict.fromkeys(COEFFICIENTS, 1.0) | {"cycles": MOST_CYCLES}
+    wear = section.build(Wear, values, harmless)
     return None if None in profiles.values() else wear
 
 

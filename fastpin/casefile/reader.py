@@ -21,7 +21,7 @@ from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.materials import known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
-from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
+from fastpin.casefile.toml_text import KINDS, CaseText, Section, field_defaults, parse_text, read_text, written
 from fastpin.errors import InputError
 from fastpin.model import LOADS, SolveOptions, checks, synonyms
 from fastpin.model.acting import check_arc, check_keep
@@ -373,12 +373,12 @@ def _about(section: Section) -> About:
     given = {key: section.value(key) for key in KEYS["about"] if key in section}
     if type(given.get("date")) is date:
         given["date"] = given["date"].isoformat()
-    return section.build(About, given, dict.fromkeys(given, "")) or About()
+    return section.build(About, given, field_defaults(About)) or About()
 
 
 def _options(section: Section) -> SolveOptions:
     given = {key: section.value(key) for key in KEYS["solve"] if key in section}
-    harmless = SolveOptions().keywords()
+    harmless = field_defaults(SolveOptions)
     if "increments" in given:
         harmless["method"] = "increment"  # replaces a wrong method, so that its increments are not reported as well
     return section.build(SolveOptions, given, harmless) or SolveOptions()

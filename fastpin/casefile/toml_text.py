@@ -11,6 +11,7 @@ import gc
 import re
 import tomllib
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import MISSING, fields
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -445,6 +446,11 @@ def _value_at(table: Any, place: KeyPath) -> Any:
         is_there = part in table if isinstance(table, dict) else isinstance(table, list) and part in range(len(table))
         table = table[part] if is_there else None
     return table
+
+
+def field_defaults(record: type) -> dict[str, Any]:
+    """The defaults of the fields of a dataclass by name. A field without a default is left out."""
+    return {each.name: each.default for each in fields(record) if each.default is not MISSING}
 
 
 def written(name: str, value: object) -> str:

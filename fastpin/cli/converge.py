@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 
 from fastpin import casefile, figures, report, studies
+from fastpin.assess import outputs
 from fastpin.cli import terminal
 from fastpin.cli.progress import Bar
 from fastpin.errors import InputError
@@ -67,6 +69,6 @@ def _write_study(study: studies.convergence.Convergence, options: argparse.Names
     return terminal.write_outputs(
         files,
         options.json,
-        lambda: report.convergence.document(study, title),
+        partial(outputs.whole_document, report.convergence.CONVERGENCE, study, {}, title=title),
         lambda: [*([title] if title else []), *report.convergence.text(study).split("\n")],
     )

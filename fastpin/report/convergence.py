@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from fastpin.assess import outputs
 from fastpin.model.options import METHODS
@@ -252,8 +251,3 @@ def write_csv(convergence: Convergence, path: Path) -> None:
                     writer.writerow(
                         {name: "" if name in unknown else outputs.csv_cell(whole[name]) for name in COLUMNS}
                     )
-
-
-def document(convergence: Convergence, title: str = "") -> dict[str, Any]:
-    """Return a study as a JSON-ready dict. Unknown values are None."""
-    return outputs.whole_document(CONVERGENCE, convergence, {}, title=title)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from fastpin.assess import outputs
 from fastpin.assess.outputs import Curve, Output, aligned
@@ -99,11 +98,6 @@ IDENTIFIED = (
     Output("notes", "texts", lambda found: list(found.notes)),
 )  # fmt: skip
 """Outputs of what a loop tells."""
-
-
-def document(found: Identified, title: str) -> dict[str, Any]:
-    """Return what a loop tells as a JSON-ready dict. A value that it does not tell is None."""
-    return outputs.whole_document(IDENTIFIED, found, {}, title=title)
 
 
 def loop_curve(found: Identified) -> Curve:

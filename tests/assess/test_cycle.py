@@ -6,12 +6,13 @@ from dataclasses import replace
 import pytest
 
 from fastpin import MATERIALS, LoadHistory, Material, MaterialPair, Problem, Result, solve
-from fastpin.assess.cycle import cycle_line, document, nodes_curve
+from fastpin.assess.cycle import CYCLE, cycle_line, nodes_curve
 from fastpin.assess.fatigue import MOST_STOPS, fatigue_lines, spectrum_damages, spectrum_line
-from fastpin.assess.outputs import json_ready, write_csv
+from fastpin.assess.outputs import document, json_ready, write_csv
 from fastpin.bodies import Bushing
 from fastpin.model import FatigueConstants
 from fastpin.model.angles import from_bottom
+from fastpin.model.units import units
 from fastpin.report.states import cycle_lines
 from fastpin.states import LoadCycle
 from tests.support.samples import PAIR
@@ -26,7 +27,7 @@ def cycle() -> LoadCycle:
 
 
 def test_a_cycle_is_ready_for_json(cycle: LoadCycle) -> None:
-    found = json.loads(json.dumps(json_ready(document(cycle)), allow_nan=False))
+    found = json.loads(json.dumps(json_ready(document(CYCLE, cycle, units(cycle.states[0].problem))), allow_nan=False))
     assert (found["first"], found["last"], found["closed"]) == (5, 7, True)
     assert found["slip_range_is_exact"]
     assert "at the kept states" not in cycle_line(cycle)
@@ -37,7 +38,7 @@ def test_a_cycle_is_ready_for_json(cycle: LoadCycle) -> None:
 
 def test_a_cycle_without_slip_sums_says_what_it_knows() -> None:
     bare = solve(Problem(PAIR, 0.01, 2e-5, 0.4), HISTORY, nodes=61).cycle()
-    found = json_ready(document(bare))
+    found = json_ready(document(CYCLE, bare, units(bare.states[0].problem)))
     assert found["largest_slip_distance"] is found["largest_friction_energy"] is None
     assert not found["slip_range_is_exact"]
     assert cycle_line(bare).startswith(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fastpin import figures, studies
+from fastpin.assess.outputs import whole_document
 from fastpin.report import identify as report
 from fastpin.report import json_schema
 from fastpin.studies import FittedValue, Identified
@@ -111,12 +112,12 @@ def test_the_text_says_what_is_told_and_what_is_not() -> None:
 
 
 def test_the_json_has_the_text_s_numbers() -> None:
-    document = report.document(identified(), "rig")
+    document = whole_document(report.IDENTIFIED, identified(), {}, title="rig")
     jsonschema.validate(document, json_schema("identify"))
     assert document["estimates"]["stiffness"]["value"] == 3e10 * THICKNESS
     assert document["energies"] == [{"measured": 0.3 * 8e-3, "deviation": 0.1 * 8e-3, "computed": 0.35 * 8e-3}]
     stuck = identified(estimates={"friction": FittedValue(np.nan, 0.4, np.inf)})
-    document = report.document(stuck, "rig")
+    document = whole_document(report.IDENTIFIED, stuck, {}, title="rig")
     jsonschema.validate(document, json_schema("identify"))
     assert document["estimates"]["friction"] == {"value": None, "low": 0.4, "high": None}
 
