@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output is not None:
         return _write_stored(case, options, ended)
     result = solved[0] if ended is None else ended.result
-    return RunReport(case, None if result is None else Held(result), ended).write(options)
+    return RunReport(case, None if result is None else Held(result), ended, is_looked_at=ended is None).write(options)
 
 
 def resume(options: argparse.Namespace) -> int:
@@ -221,8 +221,10 @@ def _check_outputs(options: argparse.Namespace) -> None:
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
     """Write the states of a stored run. Without a state, a file with this name belongs to another run."""
-    held = None if ended is not None and ended.result is None else storage.stored.StoredResult(options.output)
-    return RunReport(case, held, ended).write(options)
+    if ended is not None and ended.result is None:
+        return RunReport(case, None, ended).write(options)
+    with storage.stored.StoredResult(options.output) as held:
+        return RunReport(case, held, ended, is_looked_at=ended is None).write(options)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -236,18 +238,21 @@ class RunReport:
         The result. None if no state was reached.
     ended : SolveError, Interrupted or None
         The error that ended the run early.
+    is_looked_at : bool
+        Whether the run itself gave the warnings of its states: it does so at its end.
     """
 
     case: Case
     held: Held | None
     ended: solver.SolveError | solver.Interrupted | None
+    is_looked_at: bool = False
 
     def write(self, options: argparse.Namespace) -> int:
         """Write the files, then print the states, and return the exit code."""
         case, held = self.case, self.held
         code, error = self._report_end()
         read = terminal.Readings()
-        if held is not None:
+        if held is not None and not self.is_looked_at:
             read("warnings", lambda: warn_of(held.doubts(), 2), None)
         cycle, found = None, {}
         with contextlib.suppress(InputError):

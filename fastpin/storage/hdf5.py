@@ -150,7 +150,7 @@ class Array:
 
 
 class Group:
-    """A group of a file, with the interface of ``h5py.Group``.
+    """A group of a file, with the interface of ``h5py.Group``. A part is judged once, and then kept.
 
     Raises
     ------
@@ -160,6 +160,7 @@ class Group:
 
     def __init__(self, group: h5py.Group) -> None:
         self._group = group
+        self._parts: dict[str, Any] = {}
         self.name = str(group.name)
         self.attrs = Attributes(group)
 
@@ -173,7 +174,7 @@ class Group:
 
     def __contains__(self, path: str) -> bool:
         name, _, rest = path.partition("/")
-        if not self._group.id.links.exists(name.encode()):
+        if name not in self._parts and not self._group.id.links.exists(name.encode()):
             return False
         part = self._part(name) if rest else None
         return not rest or (isinstance(part, Group) and rest in part)
@@ -197,6 +198,11 @@ class Group:
         yield from (self[name] for name in self)
 
     def _part(self, name: str) -> Any:
+        if name not in self._parts:
+            self._parts[name] = self._judged(name)
+        return self._parts[name]
+
+    def _judged(self, name: str) -> Any:
         label = f"{self.name}/{name}".lstrip("/")
         if name not in self:
             raise ValueError(f"there is no part {label}")

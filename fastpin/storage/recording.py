@@ -123,7 +123,13 @@ def record(
             task.follow(writer)
     if solve_options.error_bars:
         _record_coarse(path, task)
-    warn_of(StoredResult(path).doubts(), 2)
+    _look_at(path)
+
+
+def _look_at(path: Path) -> None:
+    """Warn the caller of its caller of doubtful states."""
+    with StoredResult(path) as stored:
+        warn_of(stored.doubts(), 3)
 
 
 def _check_bars(options: SolveOptions, start: Result | None) -> None:
@@ -208,6 +214,7 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
         with stored.opened() as file:
             task = replace(stored_task(file), progress=progress)
         _record_coarse(path, task)
+        _look_at(path)
         return
     writer, restart = FileRecorder.reopened(path, progress)
     task = writer.task
@@ -222,4 +229,4 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
             task.follow(writer, unfit=Unfit(task.grid, error))
     if task.options.error_bars:
         _record_coarse(path, task)
-    warn_of(StoredResult(path).doubts(), 2)
+    _look_at(path)

@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 45,
     "constants of modules": 1_248,
     "hidden imports": 0,
-    "lines of code": 51_995,
+    "lines of code": 52_007,
     "lines of code of the core": 18_391,
     "files of the core": 134,
     "functions of the core": 1_967,

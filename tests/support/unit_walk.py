@@ -142,8 +142,10 @@ report limits -o limits.html
 def plots(subject: str) -> list[str]:
     """The commands that draw every kind of figure of a result, or the kinds that only a life of wear has."""
     lines = []
-    for kind, (_, _, allowed, sources) in KINDS.items():
-        if kind not in OF_SOME_PLATES and subject == ("a.h5" if "result" in sources else "life.h5"):
+    for kind, drawn in KINDS.items():
+        allowed, sources = drawn.options, drawn.sources
+        of = "a.h5" if "result" in sources else "life.h5" if "life" in sources else None
+        if kind not in OF_SOME_PLATES and subject == of:
             name = f"{kind}.svg"
             states = "--states 2,3" if "states" in allowed and kind != "sketch" else ""
             lines.append(f"plot {subject} {kind} -o {name} {states} {f'--csv {kind}.csv' if 'csv' in allowed else ''}")
