@@ -21,6 +21,9 @@ from tests.support.unit_walk import MOST_ROWS, PARTS, UNIT, Walk, cases_in, leav
 
 SYSTEMS = ("in, lbf, ksi", "mm, N, MPa")
 
+SURVEYED = [*zip(CASES, itertools.cycle(SYSTEMS), strict=False)]
+"""Cases in one of the systems, by turns: the gate has them in the other one."""
+
 WALKED = "cm, kN, GPa"
 """A system of powers of ten: the states are the same ones to the last bit."""
 
@@ -64,7 +67,7 @@ def test_every_output_is_in_the_units_of_the_case(part: str, tmp_path: Path) -> 
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize(("name", "system"), [*itertools.product(CASES, SYSTEMS)])
+@pytest.mark.parametrize(("name", "system"), some_survey(itertools.product(CASES, SYSTEMS), *SURVEYED))
 def test_cases_of_all_kinds_agree_in_all_units(name: str, system: str, tmp_path: Path) -> None:
     case, lines = CASES[name]
     walks = plain, given = pair(tmp_path, system, case)
