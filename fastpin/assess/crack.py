@@ -243,6 +243,10 @@ QUESTION = outputs.Question(
     document=lambda growth, over: outputs.document(GROWTH, growth, units(growth.problem)),
     schema=lambda: outputs.schema_of(GROWTH),
     margins=crack_margins,
+    remarks=lambda growth: [
+        *([f"Law of growth: {law_words(growth.problem, growth.law)}"] if isinstance(growth.law, KnownLaw) else []),
+        *(f"Doubt: {doubt}" for doubt in growth.doubts),
+    ],
 )
 """The crack of [crack]. Its outcome "largest_K" is the largest K_I up to the last length."""
 

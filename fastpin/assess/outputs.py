@@ -283,6 +283,8 @@ class Question(NamedTuple):
         ``schema()``: the JSON schema of the dict.
     margins : callable
         ``margins(found)``: its margins of safety.
+    remarks : callable
+        ``remarks(found)``: further lines below its figure on a page.
     in_sweeps : callable
         ``in_sweeps(how)``: what outcomes and margins of sweeps take of the value of the section.
     """
@@ -300,6 +302,7 @@ class Question(NamedTuple):
     document: Callable[[Any, Mapping[str, float]], dict[str, Any]]
     schema: Callable[[], Schema]
     margins: Callable[[Any], list[Margin]]
+    remarks: Callable[[Any], list[str]] = lambda found: []
     in_sweeps: Callable[[Any], Any] = lambda how: how
 
 

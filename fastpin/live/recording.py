@@ -114,7 +114,12 @@ def _recorded(
 def _life(result: WearResult, places: list[int], fatigue: FatigueAssessment | None) -> dict[str, Any]:
     """The chosen cycles of a life as the page needs them: pictures, worn depths, numbers and damage."""
     cycles, history, serial = [result[place] for place in places], result.history, itertools.count(1)
-    of_owners = _damages(result, fatigue)
+    several = fatigue is not None and len(fatigue.criteria) > 1
+    of_owners = {
+        points.edge_body(found.problem, found.body) + f", {found.criterion}" * several: found
+        for found in damages(result, fatigue)
+        if found.body != "seat"  # it does not wear
+    }
     quantities = {
         "worn volume": ("work per stress", [each.volume for each in cycles]),
         "largest depth": ("displacement", [each.depth for each in cycles]),
@@ -152,16 +157,6 @@ def _worn(cycle: WornCycle) -> dict[str, str]:
         ends = np.array([np.interp([-180.0, 180.0], columns[0], row, period=360.0) for row in columns[1:]])
         columns = np.hstack([np.vstack([[-180.0], ends[:, :1]]), columns, np.vstack([[180.0], ends[:, 1:]])])
     return dict(zip(("degrees", "pin", "hole"), map(packed, columns), strict=True))
-
-
-def _damages(result: WearResult, fatigue: FatigueAssessment | None) -> dict[str, WornFatigue]:
-    """The damage of the bodies in contact, by their words, and by the criterion if there are several."""
-    several = fatigue is not None and len(fatigue.criteria) > 1
-    return {
-        points.edge_body(found.problem, found.body) + f", {found.criterion}" * several: found
-        for found in damages(result, fatigue)
-        if found.body != "seat"
-    }
 
 
 def _damage(of_owners: dict[str, WornFatigue], places: list[int]) -> dict[str, Any]:

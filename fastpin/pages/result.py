@@ -7,13 +7,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from fastpin.assess.questions import QUESTIONS
 from fastpin.casefile.reader import parse_case
 from fastpin.casefile.toml_text import read_text
 from fastpin.errors import CaseFileError, InputError, ReadingError, reading
 from fastpin.model.case import About, beside_of
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.content import Album, Page, PageSection, Text
-from fastpin.pages.sections import SECTIONS, crack, seat, strength
+from fastpin.pages.sections import SECTIONS
 from fastpin.pages.source import PageParts, Source, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
 from fastpin.pages.writing import check_page, write_page
@@ -116,10 +117,9 @@ def write_source(
     page, sections = PageParts(source, Album(), convergence), []
     makers = WEAR_SECTIONS
     if source.life is None:
-        left_out = [seat] if source.case.problem.seat is None else []
-        left_out += [crack] if source.case.crack is None else []
-        left_out += [strength] if source.case.strength is None else []
-        makers = [make for make in SECTIONS if make not in left_out]
+        left_out = {name for name in QUESTIONS if name != "fatigue" and getattr(source.case, name) is None}
+        left_out |= {"seat"} if source.case.problem.seat is None else set()
+        makers = [make for make in SECTIONS if make.__name__ not in left_out]
     unread: list[ReadingError] = []
     for number, make in enumerate(makers):
         report(number, len(makers))

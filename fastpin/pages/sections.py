@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
-from fastpin.assess.crack import growth_line, law_words
+from fastpin.assess.crack import law_words
 from fastpin.assess.cycle import cycle_line
 from fastpin.assess.fatigue import Assessed, hot_spot_line, spectrum_line
 from fastpin.assess.margins import verdict
@@ -21,6 +22,7 @@ from fastpin.figures.fatigue import crack_growth_of, fatigue_of
 from fastpin.figures.history import gap_plot, history_of
 from fastpin.figures.laminates import strength_of
 from fastpin.figures.load_cycle import STRAIGHT, area_doubt, loops_of, slip_of
+from fastpin.figures.sheet import Plot
 from fastpin.figures.sketch import sketch_of
 from fastpin.figures.states import DrawnStates, Subject
 from fastpin.figures.stick_slip import stick_slip_plot
@@ -30,7 +32,6 @@ from fastpin.kernels.status import SLIP_POSITIVE
 from fastpin.model import angles, points, ties
 from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
-from fastpin.model.growth import Nasgro, Walker
 from fastpin.model.keys import FATIGUE, PLY
 from fastpin.model.loads import LOAD, named_load
 from fastpin.model.materials import Material
@@ -346,7 +347,7 @@ def hysteresis(page: PageParts) -> PageSection:
         how = "A load block with repeat = 2, or a history that ends with the loads of an earlier corner, has a cycle."
         parts.append(Text(f"There are no loops: {source.why_no_cycle}. {how}", "missing"))
     else:
-        if source.last_cycle is None:
+        if not source.result.cycles:
             words = "The history has no repeated block; its last part begins and ends with the same loads"
             parts.append(Text(f"{words}: corners {cycle.first:,} to {cycle.last:,}."))
         parts += drawn_or_reason(lambda: page.album.figure(loops_of([cycle])))
@@ -434,27 +435,26 @@ def fatigue(page: PageParts) -> PageSection:
     return PageSection("fatigue", "Fatigue", parts)
 
 
-def crack(page: PageParts) -> PageSection:
-    """Return the growth of the crack of the case, with its figure."""
-    found = page.source.answer("crack")
-    if isinstance(found, str):
-        return PageSection("crack", "Crack", [Text(found, "missing")])
-    line = Text(sentence(growth_line(found, page.source.over_yield)))
-    parts: list[SectionPart] = [line, page.album.figure(crack_growth_of(found))]
-    if isinstance(found.law, Walker | Nasgro):
-        parts.append(Text(sentence(f"Law of growth: {law_words(found.problem, found.law)}")))
-    parts += [Text(sentence(f"Doubt: {doubt}")) for doubt in found.doubts]
-    return PageSection("crack", "Crack", parts)
+def asked(name: str) -> Callable[[PageParts], PageSection]:
+    """Return what makes the section of a question of the case: lines of its answer, its figure, and remarks."""
+    pictures: dict[str, Callable[[Any], Plot]] = {
+        "crack": crack_growth_of,
+        "strength": lambda found: strength_of(Subject([found.state]).states(), found.how),
+    }
 
+    def section(page: PageParts) -> PageSection:
+        found = page.source.answer(name)
+        if found is None or isinstance(found, str):
+            return PageSection(name, name.capitalize(), [Text(found or NO_STATE, "missing")])
+        lines = QUESTIONS[name].lines(found, page.source.over_yield)
+        parts: list[SectionPart] = [Text(sentence(line)) for line in lines]
+        parts += [page.album.figure(pictures[name](found))] if name in pictures else []
+        return PageSection(
+            name, name.capitalize(), [*parts, *(Text(sentence(line)) for line in QUESTIONS[name].remarks(found))]
+        )
 
-def strength(page: PageParts) -> PageSection:
-    """Return the strength of the laminate in the worst state, with its figure."""
-    found = page.source.answer("strength")
-    if found is None or isinstance(found, str):
-        return PageSection("strength", "Strength", [Text(found or NO_STATE, "missing")])
-    plot = strength_of(Subject([found.state]).states(), found.how)
-    parts = [Text(sentence(line)) for line in QUESTIONS["strength"].lines(found, page.source.over_yield)]
-    return PageSection("strength", "Strength", [*parts, page.album.figure(plot)])
+    section.__name__ = name
+    return section
 
 
 def convergence(page: PageParts) -> PageSection:
@@ -526,7 +526,8 @@ def _shortened(text: str) -> str:
 
 SECTIONS: Sequence[Callable[[PageParts], PageSection]] = (
     overview, margins, case, materials, loads, key_figures, tractions, zones, seat, hysteresis, stresses,
-    fatigue, crack, strength, convergence, checks, provenance,
+    fatigue, *(asked(name) for name in QUESTIONS if name != "fatigue"), convergence, checks, provenance,
 )  # fmt: skip
-"""All sections, in the order of the page. Only a joint whose bush slips has a seat, and only some cases a crack or a
-[strength]."""
+"""All sections, in the order of the page. Only a joint whose bush slips has a seat, and only some cases ask questions.
+Fatigue is told unasked, too.
+"""

@@ -26,7 +26,6 @@ from fastpin.pages.content import Album, Facts, PageSection, Text
 from fastpin.report.states import stored_rows
 from fastpin.solver import Result
 from fastpin.states import LoadCycle, State, choice
-from fastpin.states.cycles import Cycle
 from fastpin.states.margins import Margin, over_yield, walk_margins
 from fastpin.storage.held import Held
 from fastpin.storage.layout import versions
@@ -289,7 +288,7 @@ class Source:
     @cached_property
     def spectrum(self) -> list[SpectrumDamage]:
         """Damage of plate and bush over a history without repeated blocks, see :func:`spectrum_damages`."""
-        is_wanted = self.case.fatigue is None and self.last_cycle is None and self.life is None
+        is_wanted = self.case.fatigue is None and not self.result.cycles and self.life is None
         states = self.held.read(range(self.points.size)) if is_wanted and self.points.size <= MOST_STOPS else []
         try:
             return spectrum_damages(states, len(self.case.history))
@@ -303,16 +302,6 @@ class Source:
             return []
         cycles = [self.life[place] for place in choice.even_choice(range(len(self.life)), MOST_SUMMED)]
         return damages(cycles, self.case.fatigue)
-
-    @property
-    def criteria(self) -> tuple[str, ...]:
-        """The criteria of the section [fatigue]; without one Smith, Watson and Topper's."""
-        return (SWT,) if self.case.fatigue is None else self.case.fatigue.criteria
-
-    @property
-    def last_cycle(self) -> Cycle | None:
-        """The changes over the last cycle of repeated blocks; None without one."""
-        return self.result.cycles[-1] if self.result.cycles else None
 
     def _closing_corner(self) -> int:
         """Return the latest corner with the loads of the last one, before it by two or more; 0 if there is none."""

@@ -13,7 +13,7 @@ from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import criterion_title
 from fastpin.figures.scar import damage_of, scar_plot, wear_plot
 from fastpin.figures.states import Subject
-from fastpin.model import angles, points, ties
+from fastpin.model import FatigueAssessment, angles, points, ties
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
 from fastpin.pages import sections
@@ -121,7 +121,8 @@ def damage(page: PageParts) -> PageSection:
     """Return the damage of the material of all bodies with constants, and the race of crack and wear."""
     source, life = page.source, _life(page)
     if not source.worn:
-        words = f"Damage needs constants for a life by {' or '.join(source.criteria)}: the key fatigue of a case file "
+        criteria = (source.case.fatigue or FatigueAssessment()).criteria
+        words = f"Damage needs constants for a life by {' or '.join(criteria)}: the key fatigue of a case file "
         words += "gives them."
         if len(life) < 2:
             words = "Damage needs the profile of cycle 0 and another one."

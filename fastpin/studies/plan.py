@@ -35,6 +35,7 @@ from fastpin.casefile.toml_text import (
 )
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model import checks
+from fastpin.model.case import BESIDE
 from fastpin.model.doubts import warn_of, wear_doubts
 from fastpin.model.keys import ANY, CASE
 from fastpin.model.problem import Problem
@@ -412,8 +413,8 @@ def base_case(source: CaseText, folder: Path) -> Base | None:
             text = read_text(folder / name)
             kind = joints.BaseJoint if _OF_JOINT.search(text) else BaseCase
             base = kind(text, name, (folder / name).parent, units or "")
-        kinds = {ANY: CASE["wear"] | CASE["fatigue"] | CASE["crack"] | CASE["strength"]}
-        source.to_si({"outcomes": kinds}, base.is_whole, base.text.root.table.get("units"))
+        kinds = {key: kind for name in ("wear", *BESIDE) for key, kind in CASE.get(name, {}).items()}
+        source.to_si({"outcomes": {ANY: kinds}}, base.is_whole, base.text.root.table.get("units"))
         return base
     except CaseFileError as error:
         for line, message in error.problems:
