@@ -96,6 +96,6 @@ def _write(case: joints.JointFile, result: joints.JointResult, options: argparse
     with Bar(1.0, ", ".join(name for name, how in asked.items() if how)) as bar:
         judged = report.joints.judged(result, case.fatigue, is_complete, progress_to(bar), case.crack)
     unit = report.joints.joint_units(result.joint)
-    document = partial(outputs.whole_document, report.joints.JOINT, judged, unit, title=case.title)
+    document = partial(outputs.whole_document, report.joint_document.JOINT, judged, unit, title=case.title)
     text = [*filter(None, [case.title]), *report.joints.describe(judged).split("\n")]
     return terminal.write_outputs(files, options.json, document, lambda: text)

@@ -212,8 +212,7 @@ def add_plot(commands: Any) -> None:
     _option(plot, "-o --output", "FIGURE", words, Path)
     _option(plot, "--csv", "FILE", "also write the numbers of the figure", Path)
     _add_interface(plot)
-    _option(plot, "--pin", "NAME", "of a joint of several pins: the figure shows this pin")
-    _option(plot, "--plate", "NAME", "of a joint: in this plate, or slice (default: the first of the pin)")
+    _add_hole(plot)
     words = "of a life of wear: show one cycle on the profile after N cycles (default: the last one stored)"
     _option(plot, "--after", "N", words, literal)
     for name, option in KIND_OPTIONS.items():
@@ -275,6 +274,12 @@ def _add_interface(command: argparse.ArgumentParser) -> None:
     command.add_argument("--interface", choices=("pin", "seat"), default="pin", help=words)
 
 
+def _add_hole(command: argparse.ArgumentParser) -> None:
+    """Add the options that choose a pin in a plate of a joint."""
+    _option(command, "--pin", "NAME", "of a joint of several pins: show the contact of this pin")
+    _option(command, "--plate", "NAME", "of a joint: in this plate, or slice (default: the first of the pin)")
+
+
 ABOUT = {
     "project": "project on the first page and in the head of each page",
     "author": "author, likewise",
@@ -286,7 +291,8 @@ ABOUT = {
 def add_report(commands: Any) -> None:
     """Add ``report``."""
     report = _command(commands, "report", "report", "run", "write a page or a PDF on a result, a case or a sweep")
-    words = "HDF5 file (run or wear -o FILE); case file (TOML), which is solved first; or directory of a sweep"
+    words = "HDF5 file (run, wear or joint -o FILE); case or joint file (TOML), which is solved first; or directory of "
+    words += "a sweep"
     _option(report, "source", "FILE_OR_DIR", words, Path)
     _option(report, "-o --output", "PAGE", "the report (html, pdf; default: the name with .html)", Path)
     _option(report, "--title", None, "title of the page of a result (default: the title of the case)")
@@ -294,6 +300,7 @@ def add_report(commands: Any) -> None:
         _option(report, f"--{name}", "TEXT", f"{words} (default: that of the case)")
     _option(report, "--case", "FILE", "case file of an HDF5 file; the page shows its text", Path)
     _option(report, "--plan", "FILE", "plan of a sweep (default: the copy in its directory)", Path)
+    _add_hole(report)
     words = "with a case file: solve a second time on a grid with half the intervals, for error bars"
     _switch(report, "--error-bars", words, default=None)
 

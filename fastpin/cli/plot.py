@@ -93,7 +93,9 @@ def _draw_of_joint(options: argparse.Namespace, stored: storage.stored.StoredRes
     return _draw(options, title, case.joint.unit_system, subject)
 
 
-def hole_of(joint: joints.Joint, options: argparse.Namespace, missing: str) -> tuple[str, str]:
+def hole_of(
+    joint: joints.Joint, options: argparse.Namespace, missing: str = "is missing beside --plate"
+) -> tuple[str, str]:
     """Return the names of the pin and the plate that options choose; of a pin alone its first plate.
 
     Without a pin raise :class:`InputError` with the words `missing`.

@@ -8,14 +8,17 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from fastpin import casefile, pages, solver, studies
+from fastpin import casefile, joints, pages, solver, storage, studies
+from fastpin.casefile.toml_text import read_text
 from fastpin.cli.options import ABOUT
+from fastpin.cli.plot import hole_of
 from fastpin.cli.progress import LOAD_POINTS, READ_POINTS, Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, EXIT_READING, as_options, fail, flag, say
 from fastpin.errors import CaseFileError, InputError, ReadingError
 from fastpin.model.case import About, Case
-from fastpin.pages.result import merged, write_source
-from fastpin.pages.source import Source
+from fastpin.pages.joint import JointSource, write_joint
+from fastpin.pages.result import write_source
+from fastpin.pages.source import Source, merged, origin_of
 from fastpin.pages.writing import check_page
 
 SECTIONS = "section {n:.0f} of {total:.0f}"
@@ -25,8 +28,13 @@ SECTIONS = "section {n:.0f} of {total:.0f}"
 def run(options: argparse.Namespace) -> int:
     """Write the page."""
     kind = "sweep" if options.source.is_dir() else "case" if options.source.suffix == ".toml" else "result"
+    if kind == "case" and joints.is_joint_file(read_text(options.source)):
+        kind = "joint"
     words = {"result": "a stored result", "case": "a case file", "sweep": "the directory of a sweep"}
-    effects = {"title": ("result", "case"), "case": ("result",), "plan": ("sweep",), "error_bars": ("case",)}
+    words["joint"] = "a joint file"
+    of_joint = ("result", "joint")
+    effects = {"title": ("result", "case", "joint"), "case": ("result",), "plan": ("sweep",), "error_bars": ("case",)}
+    effects |= {"pin": of_joint, "plate": of_joint}
     for name, kinds in effects.items():
         if getattr(options, name) is not None and kind not in kinds:
             allowed = " or ".join(words[each] for each in kinds)
@@ -35,7 +43,8 @@ def run(options: argparse.Namespace) -> int:
     check_page("--output", page)
     try:
         with as_options(("title", "case", "plan", "error_bars", *ABOUT)):
-            code = _of_case(options, page) if kind == "case" else _of_stored(options, page)
+            make = {"case": _of_case, "joint": _of_joint}.get(kind, _of_stored)
+            code = make(options, page)
     except ReadingError as error:  # the page says it, too
         code = fail(str(error), EXIT_READING)
     say(f"wrote {page}")
@@ -54,8 +63,37 @@ def _of_stored(options: argparse.Namespace, page: Path) -> int:
         if options.source.is_dir():
             pages.write_sweep_report(options.source, page, plan=options.plan, **shared)
         else:
-            pages.write_report(options.source, page, title=options.title or "", case=options.case, **shared)
+            shared |= {"title": options.title or "", "case": options.case}
+            if options.pin is not None or options.plate is not None:
+                with storage.stored.StoredResult(options.source) as stored:
+                    if not stored.is_joint:
+                        raise InputError("--pin", "is for the result of a joint of several pins")
+                    shared["hole"] = hole_of(storage.joint_files.case_of(stored).joint, options)
+            pages.write_report(options.source, page, **shared)
     return EXIT_OK
+
+
+def _of_joint(options: argparse.Namespace, page: Path) -> int:
+    """Solve a joint file, and write its page. A history that ends early has a page of its states."""
+    case, code = joints.read_joint(options.source), EXIT_OK
+    shown = options.pin is not None or options.plate is not None
+    hole = hole_of(case.joint, options) if shown else None
+    if hole is not None:
+        case.joint.place(*hole)
+    reason, how = None, dict[str, Any](nodes=case.nodes, harmonics=case.harmonics)
+    with Bar(len(case.corners), LOAD_POINTS) as bar:
+        try:
+            result = joints.solve_joint(case.joint, case.corners, progress=progress_to(bar), **how)
+        except solver.SolveError as error:
+            if error.result is None or not len(error.result):
+                raise
+            result, reason = error.result, str(error)  # type: ignore[assignment]
+            code = fail(reason, EXIT_FAILED)
+    text = options.source.read_text(encoding="utf-8-sig")
+    source = JointSource(case, result, origin_of(None), error=reason, case_text=text, hole=hole)
+    with Bar(1, SECTIONS) as bar:
+        write_joint(source.named(options.title or "", _about(options)), page, progress_to(bar))
+    return code
 
 
 def _case(source: Path) -> Case:

@@ -33,8 +33,8 @@ AROUND = 721
 MOST_BARS = 24
 """Most load points with a bar of shares."""
 
-HATCHES = ("", "/////", ".....", "\\\\\\\\\\")
-"""Hatches of the bars, which tell them apart in grey."""
+HATCHES = ("", "////", "xxx", "\\\\\\\\")
+"""Hatches of the bars, which tell them apart in grey. Dots would make a large SVG."""
 
 SAME_SHARE = 0.3
 """Difference of two shares that can't be told apart, per cent."""
@@ -274,11 +274,11 @@ def _draw_hole(
     edge = centre + radius * np.exp(1j * theta)
     panel.plot(edge.real, edge.imag, color="0.2", linewidth=0.8)
     half = 0.5 * float(np.diff(contact.theta[:2])[0])
-    for angle, status in zip(contact.theta, contact.status, strict=True):
-        if status != OPEN:
-            arc = centre + 0.97 * radius * np.exp(1j * np.linspace(angle - half, angle + half, 5))
-            colour = "black" if status == STICK else COLOURS[1]
-            panel.plot(arc.real, arc.imag, color=colour, linewidth=3.0, solid_capstyle="butt")
+    sticks, slips = contact.status == STICK, (contact.status != STICK) & (contact.status != OPEN)
+    for nodes, colour in ((sticks, "black"), (slips, COLOURS[1])):
+        turns = np.add.outer(contact.theta[nodes], [*np.linspace(-half, half, 5), np.nan]).ravel()
+        arcs = centre + 0.97 * radius * np.exp(1j * turns)  # one line with gaps, so that an SVG is small
+        panel.plot(arcs.real, arcs.imag, color=colour, linewidth=3.0, solid_capstyle="butt")
     force = complex(*state.force(pin.name, plate.name)) / longest
     if abs(force) > 0.02:
         head = centre + 0.8 * radius * force

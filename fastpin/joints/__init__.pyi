@@ -6,6 +6,7 @@ from .parts import JointPlate as JointPlate
 from .parts import tate_rosenfeld as tate_rosenfeld
 from .read import JOINT_EXAMPLE as JOINT_EXAMPLE
 from .read import JointFile as JointFile
+from .read import is_joint_file as is_joint_file
 from .read import parse_joint as parse_joint
 from .read import read_joint as read_joint
 from .result import FayingState as FayingState

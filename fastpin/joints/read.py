@@ -7,6 +7,7 @@ All faults of a file are reported at once, each with its line. :data:`JOINT_EXAM
 from __future__ import annotations
 
 import itertools
+import re
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -98,6 +99,11 @@ class JointFile(NamedTuple):
     harmonics: int | None = None
     fatigue: FatigueAssessment | None = None
     crack: SectionCrack | None = None
+
+
+def is_joint_file(text: str) -> bool:
+    """Whether a TOML text has a section that only a joint file has."""
+    return re.search(r"^\s*\[(joint|\[(pin|plate)\])\]", text, re.MULTILINE) is not None
 
 
 def read_joint(path: str | Path) -> JointFile:

@@ -6,18 +6,21 @@ import contextlib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from fastpin.assess.questions import QUESTIONS
 from fastpin.casefile.reader import parse_case
 from fastpin.casefile.toml_text import read_text
-from fastpin.errors import CaseFileError, InputError, ReadingError, reading
+from fastpin.errors import CaseFileError, InputError
+from fastpin.joints import JointResult
 from fastpin.model.case import About, beside_of
 from fastpin.model.checks import check_callable, file_path, instance, string
-from fastpin.pages.content import Album, Page, PageSection, Text
+from fastpin.pages.content import Album, Page
+from fastpin.pages.joint import JointSource, write_joint
 from fastpin.pages.sections import SECTIONS
-from fastpin.pages.source import PageParts, Source, now, with_count
+from fastpin.pages.source import PageParts, Source, merged, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
-from fastpin.pages.writing import check_page, write_page
+from fastpin.pages.writing import check_page, write_sections
 from fastpin.solver import Result
 from fastpin.storage.stored import StoredResult
 from fastpin.studies.convergence import Convergence
@@ -30,24 +33,26 @@ PageProgress = Callable[[float, float], None]
 
 
 def write_report(
-    result: Result | WearResult | str | Path,
+    result: Result | WearResult | JointResult | str | Path,
     path: str | Path,
     *,
     title: str = "",
     about: About | None = None,
     case: str | Path | None = None,
     convergence: Convergence | None = None,
+    hole: tuple[str, str] | None = None,
     progress: PageProgress | None = None,
 ) -> None:
-    """Write the report of a result or of a life of wear: one HTML page or a PDF, with all figures inside.
+    """Write the report of a result, a life of wear or a joint: one HTML page or a PDF, with all figures inside.
 
     It needs no other file. Of a long history the page shows the last cycle and the ends of the table. A section that
     lacks its data says how to get them.
 
     Parameters
     ----------
-    result : Result, WearResult or path
-        A result, a life of wear, or the file of one. The run of the file may be finished, unfinished or going on.
+    result : Result, WearResult, JointResult or path
+        A result, a life of wear, the result of a joint of several pins, or the file of one. The run of the file may be
+        finished, unfinished or going on.
     path : path
         The report. Its name ends in .html, .htm or .pdf; a PDF needs the extra ``fastpin[pdf]``. An existing file is
         overwritten, whole or not at all.
@@ -61,6 +66,9 @@ def write_report(
         that has its name with .toml, if that is a case file of the same problem and loads.
     convergence : Convergence, optional
         A study of the case, which is shown on the page of a result.
+    hole : (str, str), optional
+        Names of the pin and the plate whose contact the page of a joint shows; the hole with the largest hoop stress
+        unless given.
     progress : callable, optional
         Called as ``progress(done, all)`` with numbers of sections.
 
@@ -82,25 +90,41 @@ def write_report(
     if convergence is not None:
         instance("convergence", convergence, Convergence, "a Convergence")
     with contextlib.ExitStack() as stack:
-        if isinstance(result, Result):
-            source = Source.of_result(result, title)
-        elif isinstance(result, WearResult):
-            source = Source.of_life(result, title)
-        else:
+        stored = None
+        if not isinstance(result, (Result, WearResult, JointResult)):
             stored = stack.enter_context(StoredResult(file_path("result", result)))
-            source = Source.of_file(stored)
-            if case is None:
-                with contextlib.suppress(InputError, CaseFileError):  # the file is another case, or none
-                    source = replace(source, case_text=_case_text(stored.path.with_suffix(".toml"), source))
-        if source.life is not None and convergence is not None:
-            raise InputError("convergence", "has no effect on the report of a life of wear")
-        if case is not None:
-            source = replace(source, case_text=_case_text(case, source))
-            if source.path is None:  # a result in memory does not know how it is to be judged
-                given = parse_case(source.case_text, str(case), Path(case).parent)
-                source = replace(source, case=replace(source.case, **beside_of(given)))
-        named = replace(source.case, title=title or source.case.title, about=merged(source.case.about, about))
-        write_source(replace(source, case=named), target, convergence, progress)
+        joint: Any = result if isinstance(result, JointResult) else None
+        joint = stored if stored is not None and stored.is_joint else joint
+        if joint is not None:
+            if convergence is not None:
+                raise InputError("convergence", "has no effect on the report of a joint of several pins")
+            of_joint = replace(JointSource.of(joint, case).named(title, about), hole=hole)
+            write_joint(of_joint, target, progress)
+        elif hole is not None:
+            raise InputError("hole", "chooses a pin in a plate of a joint; this is no joint of several pins")
+        else:
+            source = _source(result if stored is None else stored, title, case)
+            if source.life is not None and convergence is not None:
+                raise InputError("convergence", "has no effect on the report of a life of wear")
+            named = replace(source.case, title=title or source.case.title, about=merged(source.case.about, about))
+            write_source(replace(source, case=named), target, convergence, progress)
+
+
+def _source(shown: Any, title: str, case: str | Path | None) -> Source:
+    """Return a result of one pin or a life of wear, in a file or in memory, with the text of its case file."""
+    if not isinstance(shown, StoredResult):
+        source = Source.of_result(shown, title) if isinstance(shown, Result) else Source.of_life(shown, title)
+    else:
+        source = Source.of_file(shown)
+        if case is None:
+            with contextlib.suppress(InputError, CaseFileError):  # the file is another case, or none
+                source = replace(source, case_text=_case_text(shown.path.with_suffix(".toml"), source))
+    if case is not None:
+        source = replace(source, case_text=_case_text(case, source))
+        if source.path is None:  # a result in memory does not know how it is to be judged
+            given = parse_case(source.case_text, str(case), Path(case).parent)
+            source = replace(source, case=replace(source.case, **beside_of(given)))
+    return source
 
 
 def write_source(
@@ -113,36 +137,17 @@ def write_source(
 
     A section that can't be made says why. :class:`ReadingError` is raised when the page is written.
     """
-    report = progress or (lambda done, total: None)
-    page, sections = PageParts(source, Album(), convergence), []
     makers = WEAR_SECTIONS
     if source.life is None:
         left_out = {name for name in QUESTIONS if name != "fatigue" and getattr(source.case, name) is None}
         left_out |= {"seat"} if source.case.problem.seat is None else set()
         makers = [make for make in SECTIONS if make.__name__ not in left_out]
-    unread: list[ReadingError] = []
-    for number, make in enumerate(makers):
-        report(number, len(makers))
-        name = make.__name__
-        try:
-            with reading(name, *({str(source.path)} if source.path is not None else ())):
-                sections.append(make(page))
-        except ReadingError as error:
-            unread.append(error)
-            sections.append(PageSection(name, name.capitalize(), [Text(f"Not known: {error.reason}.", "missing")]))
-    report(len(makers), len(makers))
     what = "Frictional contact" if source.life is None else "Wear in the frictional contact"
     lead = f"{what} of an elastic pin in the hole of an elastic plate."
     made = f"Made by fastpin {__version__} on {now()}."
     title = source.case.title or ("Report of a result" if source.life is None else "Report of a life of wear")
-    write_page(Page(title, lead, sections, made, source.case.about), path)
-    if unread:
-        raise unread[0]
-
-
-def merged(stored: About, given: About | None) -> About:
-    """Return the given fields, and the stored ones where none is given."""
-    return replace(stored, **given.given()) if given is not None else stored
+    page = Page(title, lead, [], made, source.case.about)
+    write_sections(makers, PageParts(source, Album(), convergence), page, path, progress, source.path)
 
 
 def _case_text(path: str | Path, source: Source) -> str:

@@ -509,15 +509,15 @@ def provenance(page: PageParts) -> PageSection:
         listing = "Input of the run without the options of the solver, which are not known (JSON, SI units)"
     parts: list[SectionPart] = [Facts("Origin", rows, ("subject", "value"))]
     if source.case_text:
-        parts.append(Listing("Case file", _shortened(source.case_text)))
+        parts.append(Listing("Case file", shortened(source.case_text)))
     elif source.path is not None:
         words = "The text of the case file is not in a result file: fastpin report --case CASE.toml shows it."
         parts.append(Text(words, "missing"))
-    parts.append(Listing(listing, _shortened(json.dumps(document, indent=1))))
+    parts.append(Listing(listing, shortened(json.dumps(document, indent=1))))
     return PageSection("provenance", "Versions and provenance", parts)
 
 
-def _shortened(text: str) -> str:
+def shortened(text: str) -> str:
     """Return a text, or its beginning: the compliance of a finite plate has thousands of numbers."""
     if len(text) <= MOST_CHARACTERS:
         return text

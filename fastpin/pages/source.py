@@ -21,6 +21,7 @@ from fastpin.damage.margins import MOST_STOPS, fatigue_margins
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
 from fastpin.model import LOADS, Case, LoadHistory, SolveOptions
+from fastpin.model.case import About
 from fastpin.model.points import edge_body
 from fastpin.pages.content import Album, Facts, PageSection, Text
 from fastpin.report.states import stored_rows
@@ -89,15 +90,7 @@ class Source:
         InputError
             See :func:`fastpin.load`.
         """
-        path, case, known = stored.path, stored.case, stored.origin
-        origin = [("solved by", _named_versions(known))]
-        told = {"created": "begun", "host": "machine", "platform": "system", "run": "name of the run"}
-        origin += [(words, known[name]) for name, words in told.items() if name in known]
-        content = packed_result(path)
-        if content is None:
-            origin += [("file", path.name), ("SHA-256 of the file", _digest(path))]
-        else:
-            origin += [("run in the index", path.stem), ("SHA-256 of the result", hashlib.sha256(content).hexdigest())]
+        path, case, origin = stored.path, stored.case, origin_of(stored)
         if stored.is_life:
             source = cls.of_life(life_of(stored), case.title)
             case = replace(source.case, about=case.about, options=case.options, fatigue=case.fatigue)
@@ -108,7 +101,7 @@ class Source:
         spaced = case.options.changed(between=case.options.fractions.size - 1)
         is_spaced = np.array_equal(spaced.fractions, case.options.fractions)
         case = replace(case, options=spaced) if is_spaced else case
-        return cls(case, stored, origin, stored.error, knows_options="run" in known)
+        return cls(case, stored, origin, stored.error, knows_options="run" in stored.origin)
 
     @classmethod
     def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:
@@ -121,8 +114,7 @@ class Source:
             method: Any = result.method
             options = SolveOptions(nodes=result.grid.size, method=method, error_bars=result.coarse is not None)
             case = Case(result.problem, result.history, options, title)
-        origin = [("solved by", _named_versions(versions())), ("file", "none: a result in memory")]
-        return cls(case, Held(result), origin, error, knows_options=known)
+        return cls(case, Held(result), origin_of(None), error, knows_options=known)
 
     @classmethod
     def of_life(cls, life: WearResult, title: str = "") -> Source:
@@ -215,15 +207,16 @@ class Source:
         """The last cycle; or why there is none."""
         if not self.points.size:
             return "there is no state"
-        found, first = self.result.cycles[-1] if self.result.cycles else None, 0
-        if found is None:
-            first = self._closing_corner()
-            if not first:
+        found = self.result.cycles[-1] if self.result.cycles else None
+        if found is not None:
+            begin, end = choice.span_of(found)
+        else:
+            begin, end = self.held.span or (self._closing_corner(), self.reached)
+            if not begin:
                 return "no cycle of the history has ended"
-        begin, end = (first, self.reached) if found is None else choice.span_of(found)
         part = self.held.part(begin, end)
         try:
-            return part.cycle() if found is not None else part.cycle(first=first, last=end)
+            return part.cycle() if found is not None else part.cycle(first=begin, last=end)
         except InputError as error:
             return error.reason
 
@@ -318,6 +311,21 @@ def with_count(history: LoadHistory, count: int) -> LoadHistory:
     return LoadHistory.of_blocks([*before, replace(last, count=count)])
 
 
+def origin_of(stored: StoredResult | None) -> list[tuple[str, str]]:
+    """Return where a stored result comes from, or one in memory: names and values."""
+    if stored is None:
+        return [("solved by", _named_versions(versions())), ("file", "none: a result in memory")]
+    known, path = stored.origin, stored.path
+    told = {"created": "begun", "host": "machine", "platform": "system", "run": "name of the run"}
+    origin = [("solved by", _named_versions(known))]
+    origin += [(words, known[name]) for name, words in told.items() if name in known]
+    content = packed_result(path)
+    if content is None:
+        return [*origin, ("file", path.name), ("SHA-256 of the file", _digest(path))]
+    digest = hashlib.sha256(content).hexdigest()
+    return [*origin, ("run in the index", path.stem), ("SHA-256 of the result", digest)]
+
+
 def _named_versions(known: dict[str, str]) -> str:
     """Return the versions of fastpin and the libraries as text."""
     libraries = ("python", "numpy", "scipy", "numba", "h5py")
@@ -335,6 +343,11 @@ def _digest(path: Path) -> str:
     except OSError as error:
         raise InputError(str(path), f"can't be read: {error.strerror or error}") from None
     return found.hexdigest()
+
+
+def merged(stored: About, given: About | None) -> About:
+    """Return the given fields, and the stored ones where none is given."""
+    return replace(stored, **given.given()) if given is not None else stored
 
 
 def now() -> str:

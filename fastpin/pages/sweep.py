@@ -15,8 +15,7 @@ from fastpin.figures.tolerances import samples_of, tornado_of
 from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance
 from fastpin.pages.content import Album, Facts, Items, Listing, Page, PageSection, SectionPart, Table, Text
-from fastpin.pages.result import merged
-from fastpin.pages.source import now
+from fastpin.pages.source import merged, now
 from fastpin.pages.writing import check_page, write_page
 from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.sweep import brief, chart, check_axes, definition_words, run_columns

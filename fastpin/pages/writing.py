@@ -5,16 +5,17 @@ from __future__ import annotations
 import importlib.util
 import json
 import re
-from dataclasses import asdict
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import jinja2
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, ReadingError, reading
 from fastpin.figures.style import FONTS
 from fastpin.model.checks import as_toml, file_path
-from fastpin.pages.content import Page, SectionPart, Table, shown
+from fastpin.pages.content import Page, PageSection, SectionPart, Table, Text, shown
 from fastpin.storage.files import check_writable, replacing
 
 
@@ -86,6 +87,35 @@ def write_page(page: Page, path: Path) -> None:
     content = pdf_of(page) if _is_pdf(path) else html_of(page).encode()
     with replacing(path) as temporary:
         temporary.write_bytes(content)
+
+
+def write_sections(
+    makers: Sequence[Callable[[Any], PageSection]],
+    parts: Any,
+    page: Page,
+    path: Path,
+    progress: Callable[[float, float], None] | None = None,
+    file: Path | None = None,
+) -> None:
+    """Make the sections ``maker(parts)`` of a page, and write it.
+
+    A section that can't be made says why. :class:`ReadingError` is raised when the page is written. `file` is that of
+    the result.
+    """
+    report, sections, unread = progress or (lambda done, total: None), [], list[ReadingError]()
+    for number, make in enumerate(makers):
+        report(number, len(makers))
+        name = make.__name__
+        try:
+            with reading(name, *({str(file)} if file is not None else ())):
+                sections.append(make(parts))
+        except ReadingError as error:
+            unread.append(error)
+            sections.append(PageSection(name, name.capitalize(), [Text(f"Not known: {error.reason}.", "missing")]))
+    report(len(makers), len(makers))
+    write_page(replace(page, sections=sections), path)
+    if unread:
+        raise unread[0]
 
 
 def _is_pdf(path: Path) -> bool:

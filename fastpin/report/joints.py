@@ -9,15 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fastpin.assess import crack, fatigue, margins, outputs
-from fastpin.assess.outputs import NUMBER, TEXT, WHOLE, Column, Output, list_of, map_of, schema_of, table
+from fastpin.assess import crack, fatigue, outputs
+from fastpin.assess.outputs import Column, table
 from fastpin.cracks import Growth
 from fastpin.damage.criteria import criterion_title
 from fastpin.errors import InputError
 from fastpin.joints import (
     Joint,
     JointPin,
-    JointPlate,
     JointResult,
     JointState,
     SectionCrack,
@@ -29,8 +28,8 @@ from fastpin.model import angles, ties
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.doubts import doubts_given
 from fastpin.model.points import owner_of, point_words
-from fastpin.model.units import Unit, units, units_of
-from fastpin.states.margins import over_yield, over_yield_words, smallest_margin
+from fastpin.model.units import Unit, units_of
+from fastpin.states.margins import over_yield, over_yield_words
 from fastpin.states.quantities import point_name
 from fastpin.states.state import State
 
@@ -120,27 +119,36 @@ def describe(judged: Judged) -> str:
     head = [
         f"{_counted(joint.pins, 'pin')}, {_counted(joint.plates, 'plate')}, {result.nodes} nodes a contact, "
         f"{orders} harmonics",
-        "A loose pin stays in the middle of its holes until it touches. Secondary bending is not modelled.",
+        *remarks(judged),
     ]
-    if result.snaps:
-        head.append(f"{result.snaps} times a nearly unloaded pin was released or snapped to a new place.")
-    if not judged.is_complete:
-        head.append(f"The history has not come to its end: {_counted(result, 'load point')} of it.")
     if not len(result):
         return "\n".join(head)
-    if any(min(pin_forces(result, pin)) < 0.0 for pin in joint.pins):
-        head.append("The force of a pin is negative where it points against its largest one.")
-    if any(plate.slices > 1 for plate in joint.plates):
-        head.append("That on a slice is negative where it points against the force on the whole plate.")
-    parts = [*head, "", forces_table(result), "", largest_table(result)]
+    rows = [contact_row(result, place) for place in range(len(joint.sections))]
+    tables = [forces_columns(result), largest_columns(joint, rows)]
     if joint.faying:
-        parts += ["", faying_table(result)]
-    if rows := bending_rows(result):
-        parts += ["", bending_table(joint, rows)]
+        tables.append(faying_columns(result))
+    if bent := bending_rows(result):
+        tables.append(bending_columns(joint, bent))
+    parts = [*head, *(line for columns in tables for line in ("", table(columns)))]
     return "\n".join([*parts, *margin_lines(judged), *fatigue_lines(judged), *crack_lines(judged)])
 
 
-def forces_table(result: JointResult) -> str:
+def remarks(judged: Judged) -> list[str]:
+    """Return sentences on what is assumed, and on how numbers are to be read."""
+    result = judged.result
+    found = ["A loose pin stays in the middle of its holes until it touches. Secondary bending is not modelled."]
+    if result.snaps:
+        found.append(f"{result.snaps} times a nearly unloaded pin was released or snapped to a new place.")
+    if not judged.is_complete:
+        found.append(f"The history has not come to its end: {_counted(result, 'load point')} of it.")
+    if len(result) and any(min(pin_forces(result, pin)) < 0.0 for pin in result.joint.pins):
+        found.append("The force of a pin is negative where it points against its largest one.")
+    if len(result) and any(plate.slices > 1 for plate in result.joint.plates):
+        found.append("That on a slice is negative where it points against the force on the whole plate.")
+    return found
+
+
+def forces_columns(result: JointResult) -> list[Column]:
     """Return the loads, the displacements of plates that move, and the force of each pin on its first plate.
 
     The force has a sign, see :func:`pin_forces`. The friction of each faying surface follows, with its sign: the force
@@ -170,16 +178,14 @@ def forces_table(result: JointResult) -> str:
             values = [float(state.faying[place].force[k]) for state in states]
             if max(map(abs, values)) > SLIGHT * surface.clamp.limit:
                 columns.append(_column(f"friction {surface}.{axis}", values, unit["force"]))
-    return table(columns)
+    return columns
 
 
-def largest_table(result: JointResult) -> str:
-    """Return what is largest of all states at each pin in each plate."""
-    rows = [contact_row(result, place) for place in range(len(result.joint.sections))]
-    names = [(pin.name, plate.name) for pin, plate in result.joint.sections]
-    columns: list[Column] = [("pin", "", [pin for pin, _ in names]), ("plate", "", [plate for _, plate in names])]
+def largest_columns(joint: Joint, rows: list[dict[str, Any]]) -> list[Column]:
+    """Return what is largest of all states at each pin in each plate, from the :func:`contact_row` of each."""
+    columns: list[Column] = [(name, "", [row[name] for row in rows]) for name in ("pin", "plate")]
     columns.append(("first contact", "", ["never" if row["touched"] is None else str(row["touched"]) for row in rows]))
-    unit = joint_units(result.joint)
+    unit = joint_units(joint)
     for key, name, kind in (("force", "largest force", "force"), ("pressure", "largest p", "traction")):
         columns.append(_column(name, [row[key] for row in rows], unit[kind]))
     factor, label = unit["traction"].scale([row["hoop"] for row in rows])
@@ -190,10 +196,10 @@ def largest_table(result: JointResult) -> str:
     columns.append(("load point", "", [str(row["hoop_step"]) for row in rows]))
     columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
     columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
-    return table(columns)
+    return columns
 
 
-def faying_table(result: JointResult) -> str:
+def faying_columns(result: JointResult) -> list[Column]:
     """Return what is largest of all states at each faying surface of clamped plates."""
     rows, unit = [faying_row(result, place) for place in range(len(result.joint.faying))], joint_units(result.joint)
     columns: list[Column] = [("pin", "", [row["pin"] for row in rows])]
@@ -203,17 +209,17 @@ def faying_table(result: JointResult) -> str:
     columns.append(("load point", "", [str(row["step"]) for row in rows]))
     columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
     columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
-    return table(columns)
+    return columns
 
 
-def bending_table(joint: Joint, rows: list[dict[str, Any]]) -> str:
+def bending_columns(joint: Joint, rows: list[dict[str, Any]]) -> list[Column]:
     """Return the largest bending of each pin that is a beam."""
     unit = joint_units(joint)
     columns: list[Column] = [("pin", "", [row["pin"] for row in rows])]
     shown = {"moment": ("largest moment", "moment"), "stress": ("bending stress", "traction")}
     for key, (name, kind) in (shown | {"place": ("from its end", "length")}).items():
         columns.append(_column(name, [row[key] for row in rows], unit[kind]))
-    return table([*columns, ("load point", "", [str(row["step"]) for row in rows])])
+    return [*columns, ("load point", "", [str(row["step"]) for row in rows])]
 
 
 def bending_rows(result: JointResult) -> list[dict[str, Any]]:
@@ -235,19 +241,23 @@ def bending_rows(result: JointResult) -> list[dict[str, Any]]:
 
 def margin_lines(judged: Judged) -> list[str]:
     """Return a table of the known margins, the smallest first; no line if none is known."""
-    known = [each for each in judged.margins if math.isfinite(each.margin.margin)]
-    if not known:
-        return []
+    cells = margin_cells(judged)
+    head = "margins of safety over all load points, allowable/value - 1, near the holes and in the pins:"
+    left = _left_out(len(cells), "larger margins")
+    return ["", head, *outputs.aligned(cells[:MOST_LISTED], "lrrl"), *left] if cells else []
+
+
+def margin_cells(judged: Judged) -> list[tuple[str, str, str, str]]:
+    """Return the known margins, the smallest first: subject, value and allowable, margin, place."""
     unit = joint_units(judged.result.joint)["traction"]
-    cells = [
+    return [
         (
             f"{pin} in {plate}, {row.subject}", f"{unit.text(row.value, 4)} of {unit.text(row.allowable, 4)}",
             f"{row.margin:+.2f}", f"load point {point_name(row.load_point)}, {row.remark}",
         )
-        for pin, plate, row in known[:MOST_LISTED]
+        for pin, plate, row in judged.margins
+        if math.isfinite(row.margin)
     ]  # fmt: skip
-    head = "margins of safety over all load points, allowable/value - 1, near the holes and in the pins:"
-    return ["", head, *outputs.aligned(cells, "lrrl"), *_left_out(len(known), "larger margins")]
 
 
 def fatigue_lines(judged: Judged) -> list[str]:
@@ -257,8 +267,16 @@ def fatigue_lines(judged: Judged) -> list[str]:
         return []
     if judged.reason:
         return ["", f"fatigue: not known, {judged.reason}"]
+    cells = fatigue_cells(judged, how)
+    head = f"fatigue over {fatigue.assessment_words(how)}, with the stresses at the load points:"
+    left = _left_out(len(cells), "longer lives")
+    return ["", head, *outputs.aligned(cells[:MOST_LISTED], "lrrl"), *left]
+
+
+def fatigue_cells(judged: Judged, how: FatigueAssessment) -> list[tuple[str, str, str, str]]:
+    """Return the damages, the largest first: pin, plate and criterion, life, damage, place."""
     over, cells = judged.over, []
-    for pin, plate, found in judged.damages[:MOST_LISTED]:
+    for pin, plate, found in judged.damages:
         spot, owner = found.hot_spot, owner_of(found.problem, found.body)
         name = f"{pin} in {plate}, {'hole' if found.body == 'plate' else owner}, {criterion_title(found.criterion)}"
         if math.isnan(spot.theta):
@@ -267,8 +285,7 @@ def fatigue_lines(judged: Judged) -> list[str]:
         where = point_words(found.problem, found.body, spot.theta, spot.depth, 2)
         mark = over_yield_words(over.get((pin, plate), {}), owner)
         cells.append((name, fatigue.life_words(found, how), f"damage {spot.damage:.4g}", where + mark))
-    head = f"fatigue over {fatigue.assessment_words(how)}, with the stresses at the load points:"
-    return ["", head, *outputs.aligned(cells, "lrrl"), *_left_out(len(judged.damages), "longer lives")]
+    return cells
 
 
 def crack_lines(judged: Judged) -> list[str]:
@@ -324,7 +341,7 @@ def contact_row(result: JointResult, place: int) -> dict[str, Any]:
     peaks, pressures, slips, touched, lost = [], [], [], None, 0.0
     for contact in result.states.section(place):
         peaks.append(contact.peak_hoop_stress("plate"))
-        pressures.append(_pressure(contact))
+        pressures.append(largest_pressure(contact))
         slips.append(float(np.max(contact.slip_distance)))  # type: ignore[arg-type]
         touched = contact.step + 1 if touched is None and contact.in_contact else touched
         lost = contact.dissipation * plate.thickness
@@ -363,7 +380,8 @@ def faying_row(result: JointResult, place: int) -> dict[str, Any]:
     }
 
 
-def _pressure(contact: State) -> float:
+def largest_pressure(contact: State) -> float:
+    """The peak pressure of a contact, Pa; 0 without contact."""
     return float(contact.peak_pressure) if contact.in_contact else 0.0
 
 
@@ -376,225 +394,3 @@ def _column(name: str, values: list[float], unit: Unit) -> Column:
     factor, label = unit.scale(values)
     largest = max(map(abs, values), default=0.0)
     return name, label, [f"{factor * value:.5g}" if abs(value) > 1e-9 * largest else "0" for value in values]
-
-
-class JointContact(NamedTuple):
-    """A pin in a plate at a load point: a place among the sections of a joint."""
-
-    state: JointState
-    place: int
-
-    @property
-    def pin(self) -> JointPin:
-        """The pin."""
-        return self.state.joint.sections[self.place][0]
-
-    @property
-    def plate(self) -> JointPlate:
-        """The plate."""
-        return self.state.joint.sections[self.place][1]
-
-    @property
-    def contact(self) -> State:
-        """The state of the contact."""
-        return self.state.contacts[self.place]
-
-
-def _loads(state: JointState) -> dict[str, float]:
-    """Loads in printed units."""
-    unit, joint = joint_units(state.joint), state.joint
-    kinds = {name: "traction" if joint.is_stress(name) else "force" for name in state.load}
-    return {name: unit[kinds[name]].factor * value for name, value in state.load.items()}
-
-
-def _moved(state: JointState) -> dict[str, list[float]]:
-    """Displacement in printed units and rotation of each plate."""
-    factor = joint_units(state.joint)["displacement"].factor
-    moved = (state.moved * [factor, factor, 1.0]).tolist()
-    return dict(zip((plate.name for plate in state.joint.plates), moved, strict=True))
-
-
-KINDS = {
-    "force": "force", "moment": "moment", "stress": "traction", "length": "displacement", "energy": "energy",
-    "angle": "rotation",
-}  # fmt: skip
-"""The kinds of quantity whose units JSON names, by their names there."""
-
-CONTACT = (
-    Output("pin", "text", lambda at: at.pin.name),
-    Output("plate", "text", lambda at: at.plate.name),
-    Output(
-        "force", form=list_of(NUMBER, 2),
-        of=lambda at: joint_units(at.state.joint)["force"].factor * at.state.forces[at.place],
-    ),
-    Output("moment", "moment", lambda at: at.state.moments[at.place]),
-    Output("share", of=lambda at: at.state.shares(at.plate.name)[at.pin.name], optional=True),
-    Output("peak_pressure", "traction", lambda at: _pressure(at.contact)),
-    Output(
-        "peak_hoop_stress", of=lambda at: at.contact.peak_hoop_stress("plate"),
-        parts=(Output("value", "traction"), Output("angle", optional=True), Output("resolved", "truth")),
-    ),
-    Output("dissipation", "energy", lambda at: at.contact.dissipation * at.plate.thickness),
-    Output("slip", "displacement", lambda at: np.max(at.contact.slip_distance)),
-)  # fmt: skip
-"""Outputs of a :class:`JointContact`."""
-
-NAMES = (Output("pin", "text"), Output("plate", "text"))
-"""Outputs of something where a pin goes through a plate."""
-
-LARGEST = (
-    *NAMES,
-    Output("touched", "whole", optional=True),
-    Output("force", "force"),
-    *outputs.numbers("pressure hoop", "traction"),
-    Output("hoop_angle", optional=True),
-    Output("hoop_step", "whole"),
-    Output("resolved", "truth"),
-    Output("slip", "displacement"),
-    Output("dissipation", "energy"),
-)
-"""Outputs of a :func:`contact_row`."""
-
-FAYING = (
-    Output("pin", "text"),
-    Output("plates", form=list_of(TEXT, 2)),
-    *outputs.numbers("force", "force"),
-    Output("used"),
-    Output("step", "whole"),
-    Output("slip", "displacement"),
-    Output("dissipation", "energy"),
-)
-"""Outputs of a :func:`faying_row`."""
-
-
-RUBBED = (
-    *FAYING[:2],  # the names
-    *(Output(name, form=list_of(NUMBER, 2)) for name in ("force", "slip")),
-    Output("dissipation", "energy"),
-)
-"""Outputs of a faying surface in a state."""
-
-
-def _rubbed(state: JointState) -> list[dict[str, Any]]:
-    """The faying surfaces of a state: force and slip in printed units, energy in J."""
-    unit = joint_units(state.joint)
-    return [
-        {
-            "pin": surface.pin,
-            "plates": [surface.plate, surface.other],
-            "force": unit["force"].factor * at.force,
-            "slip": unit["displacement"].factor * at.slip,
-            "dissipation": at.dissipation,
-        }
-        for surface, at in zip(state.joint.faying, state.faying, strict=True)
-    ]
-
-
-JOINT_STATE = (
-    Output("load_point", "whole", lambda state: state.step + 1),
-    Output("loads", of=_loads, form=map_of(NUMBER, "forces and stresses")),
-    Output(
-        "moved", form=map_of(list_of(NUMBER, 3), "displacement along x and y, and rotation"), of=_moved,
-    ),
-    Output(
-        "contacts", "list", lambda state: [JointContact(state, place) for place in range(len(state.contacts))],
-        parts=CONTACT,
-    ),
-    Output("faying", "list", _rubbed, parts=RUBBED),
-    Output("residuals", form=map_of(NUMBER, "violations of the conditions of contact and equilibrium")),
-)  # fmt: skip
-"""Outputs of a state of a joint."""
-
-BODY = (*NAMES, *fatigue.DAMAGE, Output("over_yield", optional=True))
-"""Outputs of the damage of a plate or of a pin, where the pin goes through the plate."""
-
-
-def _margins(judged: Judged) -> list[dict[str, Any]]:
-    """The margins, the smallest first."""
-    rows = [each.margin for each in judged.margins]
-    joint, states = judged.result.joint, judged.result.states
-    problems = [states.section(joint.place(each.pin, each.plate)).problem for each in judged.margins]
-    found = []
-    for at, problem in zip(judged.margins, problems, strict=True):
-        unit, is_least = units(problem)[at.margin.kind], at.margin is smallest_margin(rows)
-        row = margins.MarginRow(at.margin, problem, unit, is_least, None)
-        found.append(outputs.document(NAMES, at, {}) | outputs.document(margins.ROW, row, {}))
-    return found
-
-
-def _bodies(judged: Judged) -> list[dict[str, Any]]:
-    """The damage of plates and pins, the largest first."""
-    found = []
-    for at in judged.damages:
-        over = judged.over[at.pin, at.plate].get(owner_of(at.found.problem, at.found.body))
-        body = outputs.document(fatigue.DAMAGE, at.found, units(at.found.problem))
-        found.append(outputs.document(NAMES, at, {}) | body | {"over_yield": over})
-    return found
-
-
-JOINT = (
-    Output(
-        "units", form=map_of(TEXT, "unit of each kind of quantity"),
-        of=lambda judged: {name: joint_units(judged.result.joint)[kind].name for name, kind in KINDS.items()},
-    ),
-    Output("nodes", "whole", lambda judged: judged.result.nodes),
-    Output(
-        "harmonics", form=map_of(WHOLE, "highest harmonic of the holes of each plate"),
-        of=lambda judged: dict(
-            zip((each.name for each in judged.result.joint.plates), judged.result.harmonics, strict=True)
-        ),
-    ),
-    Output("complete", "truth", lambda judged: judged.is_complete),
-    Output("snaps", "whole", lambda judged: judged.result.snaps),
-    Output("seconds", of=lambda judged: judged.result.seconds),
-    Output(
-        "largest", "list",
-        lambda judged: [
-            contact_row(judged.result, place)
-            for place in range(len(judged.result.joint.sections) * bool(len(judged.result)))
-        ],
-        parts=LARGEST,
-    ),
-    Output(
-        "largest_faying", "list",
-        lambda judged: [
-            faying_row(judged.result, place)
-            for place in range(len(judged.result.joint.faying) * bool(len(judged.result)))
-        ],
-        parts=FAYING,
-    ),
-    Output(
-        "bending", "list", lambda judged: bending_rows(judged.result) if len(judged.result) else [], optional=True,
-        parts=(
-            Output("pin", "text"), Output("moment", "moment"), Output("stress", "traction"),
-            Output("place", "length"), Output("step", "whole"),
-        ),
-    ),
-    Output("margins", of=_margins, form=list_of(schema_of((*NAMES, *margins.ROW)))),
-    Output(
-        "fatigue", of=lambda judged: None if judged.how is None else judged, optional=True,
-        parts=(
-            Output("how", of=lambda judged: judged.how, parts=fatigue.HOW),
-            Output("error", "text", lambda judged: judged.reason or None, optional=True),
-            Output("bodies", of=_bodies, form=list_of(schema_of(BODY))),
-        ),
-    ),
-    Output(
-        "crack", of=lambda judged: None if judged.crack is None else judged, optional=True,
-        parts=(
-            Output("pin", "text", lambda judged: judged.crack.pin),
-            Output("plate", "text", lambda judged: judged.crack.plate),
-            Output(
-                "error", "text", lambda judged: None if isinstance(judged.growth, Growth) else judged.growth,
-                optional=True,
-            ),
-            Output(
-                "growth", of=lambda judged: judged.growth if isinstance(judged.growth, Growth) else None,
-                words="as fastpin crack --json gives it; places count from the centre of the hole", optional=True,
-                parts=crack.DOCUMENT,
-            ),
-        ),
-    ),
-    Output("states", "list", lambda judged: judged.result.states, parts=JOINT_STATE),
-)  # fmt: skip
-"""Outputs of a :class:`Judged` joint."""

@@ -12,7 +12,7 @@ from fastpin.assess import crack, outputs, wear
 from fastpin.assess.outputs import Output
 from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.model.checks import choice
-from fastpin.report import charts, convergence, identify, joints, summary, tolerances
+from fastpin.report import charts, convergence, identify, joint_document, summary, tolerances
 from fastpin.verification.rows import Check
 from fastpin.version import __version__
 
@@ -101,7 +101,7 @@ _DOCUMENTS: dict[str, Callable[[], outputs.Schema]] = {
     "crack": partial(outputs.whole_schema, crack.DOCUMENT),
     "charts": partial(outputs.whole_schema, charts.LOOKED, has_title=False),
     "identify": partial(outputs.whole_schema, identify.IDENTIFIED),
-    "joint": partial(outputs.whole_schema, joints.JOINT),
+    "joint": partial(outputs.whole_schema, joint_document.JOINT),
 }
 
 COMMANDS = tuple(_DOCUMENTS)

@@ -100,7 +100,7 @@ class StoredResult(Held):
         "created" is the date of the file's first writing, UTC, ISO 8601. "run" is there only if a run has written the
         file, which then holds all options of the solver.
         """
-        with self.opened() as file:
+        with self.opened(form=None) as file:
             attributes = {hdf5.text_of(name): hdf5.text_of(value) for name, value in file.attrs.items()}
         versions = {name: value for name, value in attributes.items() if name.startswith("version_")}
         found = {name.removeprefix("version_"): value for name, value in versions.items()}
@@ -109,7 +109,7 @@ class StoredResult(Held):
     @cached_property
     def error(self) -> str | None:
         """The message of the error that ended the run early; None if no error did."""
-        with self.opened() as file:
+        with self.opened(form=None) as file:
             error = file.attrs.get("error")
             return None if error is None else hdf5.text_of(error)
 

@@ -174,6 +174,13 @@ def _values(result: JointResult, name: str, pairs: Pairs) -> np.ndarray:
     return np.array([[QUANTITIES[name].of(state, *pair) for pair in pairs] for state in result.states])
 
 
+def largest_load(result: JointResult, plate: str) -> int:
+    """The place of the state with the largest force of all pins on a plate or a slice."""
+    pins = [pin.name for pin in result.joint.pins if plate.partition(".")[0] in pin.plates]
+    forces = [np.sum([state.force(pin, plate) for pin in pins], axis=0) for state in result.states.bare]
+    return ties.top(np.hypot(*np.transpose(forces)).tolist())
+
+
 def of_joint(name: str, take: str, pairs: Pairs, result: JointResult) -> float:
     """Take a number from the largest one of some pins and plates at every state.
 
@@ -186,10 +193,7 @@ def of_joint(name: str, take: str, pairs: Pairs, result: JointResult) -> float:
     if take == "last":
         return float(found[-1])
     if take == AT_LARGEST_LOAD:
-        plate, joint = pairs[0][1], result.joint
-        pins = [pin.name for pin in joint.pins if plate.partition(".")[0] in pin.plates]
-        forces = [np.sum([state.force(pin, plate) for pin in pins], axis=0) for state in result.states.bare]
-        return float(found[ties.top(np.hypot(*np.transpose(forces)).tolist())])
+        return float(found[largest_load(result, pairs[0][1])])
     known = found[np.isfinite(found)]
     if not len(known):
         return math.nan

@@ -12,7 +12,6 @@ import hashlib
 import itertools
 import json
 import math
-import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -71,9 +70,6 @@ ROOT_KEYS = {name: name for name in ("title", "units", "case")} | {
     "grid": "[grid]", "list": "[[list]]", "outcomes": "[outcomes]", "labels": "[labels]"
 }  # fmt: skip
 """Keys of a plan, as they are written."""
-
-_OF_JOINT = re.compile(r"^\s*\[(joint|\[(pin|plate)\])\]", re.MULTILINE)
-"""A section that only a joint file has."""
 
 _RANGE_KEYS = ("from", "to", "count", "spacing")
 
@@ -411,7 +407,7 @@ def base_case(source: CaseText, folder: Path) -> Base | None:
             base: Base = BaseCase(EXAMPLE, "built-in case", folder, units or "")
         else:
             text = read_text(folder / name)
-            kind = joints.BaseJoint if _OF_JOINT.search(text) else BaseCase
+            kind = joints.BaseJoint if joints.is_joint_file(text) else BaseCase
             base = kind(text, name, (folder / name).parent, units or "")
         kinds = {key: kind for name in ("wear", *BESIDE) for key, kind in CASE.get(name, {}).items()}
         source.to_si({"outcomes": {ANY: kinds}}, base.is_whole, base.text.root.table.get("units"))

@@ -20,6 +20,7 @@ from fastpin.lugs.plates import COARSE
 from fastpin.model import Points
 from fastpin.report import joints as report
 from fastpin.report import json_schema
+from fastpin.report.joint_document import JOINT
 from tests.support.faults import faults_of
 from tests.support.laps import (
     ALUMINIUM,
@@ -295,7 +296,7 @@ def test_a_wrong_clamp_is_refused_in_one_sentence(make: Any, words: str) -> None
 def test_text_json_and_figure_tell_the_same_friction() -> None:
     case = parse_joint(CLAMPED)
     judged = report.judged(solve_joint(case.joint, case.corners, nodes=16, harmonics=8))
-    text, document = report.describe(judged), whole_document(report.JOINT, judged, {}, title="")
+    text, document = report.describe(judged), whole_document(JOINT, judged, {}, title="")
     Draft202012Validator(json_schema("joint")).validate(document)
     assert json.loads(json.dumps(document, allow_nan=False)) == document
     row, first = document["largest_faying"][0], document["states"][0]["faying"][0]

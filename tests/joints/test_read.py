@@ -17,6 +17,7 @@ from fastpin.joints import JOINT_EXAMPLE, JointResult, parse_joint, solve_joint
 from fastpin.model import FatigueAssessment
 from fastpin.report import joints as report
 from fastpin.report import json_schema
+from fastpin.report.joint_document import JOINT
 from tests.support.faults import faults_of
 from tests.support.laps import SHEETS
 
@@ -102,7 +103,7 @@ def test_a_joint_file_is_no_case_file() -> None:
 
 def test_text_and_json_tell_the_same_numbers() -> None:
     judged = report.judged(solved())
-    text, document = report.describe(judged), whole_document(report.JOINT, judged, {}, title="two bolts")
+    text, document = report.describe(judged), whole_document(JOINT, judged, {}, title="two bolts")
     assert "fatigue" not in text
     assert "2 pins, 1 plate, 24 nodes a contact" in text
     assert json.loads(json.dumps(document, allow_nan=False)) == document
@@ -125,7 +126,7 @@ def _words(text: str) -> str:
 def test_text_and_json_tell_the_same_lives_and_margins() -> None:
     case = parse_joint(SHEETS.replace('"aluminium"', '"2024-T3"').replace("4e3", "8e3") + "[fatigue]\n")
     judged = report.judged(solve_joint(case.joint, case.corners, nodes=24), case.fatigue)
-    text, document = _words(report.describe(judged)), whole_document(report.JOINT, judged, {}, title="two bolts")
+    text, document = _words(report.describe(judged)), whole_document(JOINT, judged, {}, title="two bolts")
     Draft202012Validator(json_schema("joint")).validate(document)
     first, least = document["fatigue"]["bodies"][0], document["margins"][0]
     assert (first["pin"], first["plate"], first["body"]) == ("A", "sheet", "plate")
@@ -145,7 +146,7 @@ def test_text_and_json_tell_the_same_lives_and_margins() -> None:
     unfinished = report.judged(judged.result, case.fatigue, is_complete=False)
     assert "fatigue: not known, the history has not come to its end" in report.describe(unfinished)
     assert "The history has not come to its end: 2 load points of it." in report.describe(unfinished)
-    assert [whole_document(report.JOINT, each, {})["complete"] for each in (judged, unfinished)] == [True, False]
+    assert [whole_document(JOINT, each, {})["complete"] for each in (judged, unfinished)] == [True, False]
 
 
 def test_the_force_of_a_pin_is_negative_against_its_largest_one() -> None:
@@ -161,7 +162,7 @@ def test_a_joint_without_a_stress_is_told_and_drawn() -> None:
     result = solve_joint(parse_joint(SHEETS).joint, [{"A.x": 0.0}], nodes=16)
     judged = report.judged(result)
     assert "never 0 0 0 - 1 0 0" in _words(report.describe(judged))
-    document = whole_document(report.JOINT, judged, {}, title="")
+    document = whole_document(JOINT, judged, {}, title="")
     Draft202012Validator(json_schema("joint")).validate(document)
     assert document["largest"][0]["hoop_angle"] is None
     (legend,) = figures.plot_joint(result).legends

@@ -162,7 +162,7 @@ def test_a_slice_has_its_name_in_texts_and_in_the_json(short: JointResult) -> No
     assert "pin on near" in text
     assert " lug.3 " in text
     document = outputs.whole_document(
-        report.joints.JOINT, judged, report.joints.joint_units(short.joint), title="clevis"
+        report.joint_document.JOINT, judged, report.joints.joint_units(short.joint), title="clevis"
     )
     assert [each["plate"] for each in document["states"][0]["contacts"]][:3] == ["near.1", "near.2", "lug.1"]
     assert sum(each["dissipation"] for each in document["states"][0]["contacts"]) > 0.0
@@ -259,7 +259,7 @@ def test_the_bending_of_a_pin_is_told(short: JointResult) -> None:
     assert row["place"] in places
     assert moments.shape == (len(places), 2)
     judged = report.joints.judged(result)
-    document = outputs.whole_document(report.joints.JOINT, judged, report.joints.joint_units(joint), title="")
+    document = outputs.whole_document(report.joint_document.JOINT, judged, report.joints.joint_units(joint), title="")
     assert document["bending"][0]["pin"] == row["pin"]
     assert "bending stress" in report.joints.describe(judged)
     assert str(refused(result[0].bending, "z")).startswith("pin: must be")

@@ -25,6 +25,7 @@ from fastpin.model.crack import CrackGrowth
 from fastpin.model.growth import Walker
 from fastpin.report import joints as report
 from fastpin.report import json_schema
+from fastpin.report.joint_document import JOINT
 from fastpin.states.state import State
 from tests.support.faults import faults_of
 
@@ -206,7 +207,7 @@ def test_text_and_json_tell_the_same_crack() -> None:
     case = parse_joint(STRAP.replace(SECOND_PIN, ""))
     result = solve_joint(case.joint, case.corners, nodes=case.nodes)
     judged = report.judged(result, crack=case.crack)
-    document = whole_document(report.JOINT, judged, report.joint_units(result.joint), title="strap")
+    document = whole_document(JOINT, judged, report.joint_units(result.joint), title="strap")
     Draft202012Validator(json_schema("joint")).validate(document)
     told = document["crack"]
     assert (told["pin"], told["plate"], told["error"]) == ("A", "strip", None)
@@ -216,6 +217,6 @@ def test_text_and_json_tell_the_same_crack() -> None:
     assert told["growth"]["crack"]["repeated"] == "cycle"
     unfinished = report.judged(result, crack=case.crack, is_complete=False)
     assert "A in strip, crack: not known, the history has not come to its end" in report.describe(unfinished)
-    document = whole_document(report.JOINT, unfinished, report.joint_units(result.joint), title="strap")
+    document = whole_document(JOINT, unfinished, report.joint_units(result.joint), title="strap")
     assert document["crack"]["growth"] is None
     assert json.loads(json.dumps(document)) == document

@@ -4,6 +4,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
+from fastpin.joints import JointResult
 from fastpin.pages import write_report
 from fastpin.solver.result import Result
 from fastpin.wear_lives.wear_result import WearResult
@@ -59,7 +60,7 @@ class Page(HTMLParser):
             self.text += data
 
 
-def words_of(source: Result | WearResult | Path, path: Path, **options: Any) -> str:
+def words_of(source: Result | WearResult | JointResult | Path, path: Path, **options: Any) -> str:
     """Write the page of a result or a life of wear, and return its words."""
     write_report(source, path, **options)
     return Page(path.read_text(encoding="utf-8")).text

@@ -1,0 +1,239 @@
+"""The result of a joint as JSON."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fastpin.assess import crack, fatigue, margins, outputs
+from fastpin.assess.outputs import NUMBER, TEXT, WHOLE, Output, list_of, map_of, schema_of
+from fastpin.cracks import Growth
+from fastpin.joints import JointPin, JointPlate, JointState
+from fastpin.model.points import owner_of
+from fastpin.model.units import units
+from fastpin.report.joints import Judged, bending_rows, contact_row, faying_row, joint_units, largest_pressure
+from fastpin.states.margins import smallest_margin
+from fastpin.states.state import State
+
+
+class JointContact(NamedTuple):
+    """A pin in a plate at a load point: a place among the sections of a joint."""
+
+    state: JointState
+    place: int
+
+    @property
+    def pin(self) -> JointPin:
+        """The pin."""
+        return self.state.joint.sections[self.place][0]
+
+    @property
+    def plate(self) -> JointPlate:
+        """The plate."""
+        return self.state.joint.sections[self.place][1]
+
+    @property
+    def contact(self) -> State:
+        """The state of the contact."""
+        return self.state.contacts[self.place]
+
+
+def _loads(state: JointState) -> dict[str, float]:
+    """Loads in printed units."""
+    unit, joint = joint_units(state.joint), state.joint
+    kinds = {name: "traction" if joint.is_stress(name) else "force" for name in state.load}
+    return {name: unit[kinds[name]].factor * value for name, value in state.load.items()}
+
+
+def _moved(state: JointState) -> dict[str, list[float]]:
+    """Displacement in printed units and rotation of each plate."""
+    factor = joint_units(state.joint)["displacement"].factor
+    moved = (state.moved * [factor, factor, 1.0]).tolist()
+    return dict(zip((plate.name for plate in state.joint.plates), moved, strict=True))
+
+
+KINDS = {
+    "force": "force", "moment": "moment", "stress": "traction", "length": "displacement", "energy": "energy",
+    "angle": "rotation",
+}  # fmt: skip
+"""The kinds of quantity whose units JSON names, by their names there."""
+
+CONTACT = (
+    Output("pin", "text", lambda at: at.pin.name),
+    Output("plate", "text", lambda at: at.plate.name),
+    Output(
+        "force", form=list_of(NUMBER, 2),
+        of=lambda at: joint_units(at.state.joint)["force"].factor * at.state.forces[at.place],
+    ),
+    Output("moment", "moment", lambda at: at.state.moments[at.place]),
+    Output("share", of=lambda at: at.state.shares(at.plate.name)[at.pin.name], optional=True),
+    Output("peak_pressure", "traction", lambda at: largest_pressure(at.contact)),
+    Output(
+        "peak_hoop_stress", of=lambda at: at.contact.peak_hoop_stress("plate"),
+        parts=(Output("value", "traction"), Output("angle", optional=True), Output("resolved", "truth")),
+    ),
+    Output("dissipation", "energy", lambda at: at.contact.dissipation * at.plate.thickness),
+    Output("slip", "displacement", lambda at: np.max(at.contact.slip_distance)),
+)  # fmt: skip
+"""Outputs of a :class:`JointContact`."""
+
+NAMES = (Output("pin", "text"), Output("plate", "text"))
+"""Outputs of something where a pin goes through a plate."""
+
+LARGEST = (
+    *NAMES,
+    Output("touched", "whole", optional=True),
+    Output("force", "force"),
+    *outputs.numbers("pressure hoop", "traction"),
+    Output("hoop_angle", optional=True),
+    Output("hoop_step", "whole"),
+    Output("resolved", "truth"),
+    Output("slip", "displacement"),
+    Output("dissipation", "energy"),
+)
+"""Outputs of a :func:`contact_row`."""
+
+FAYING = (
+    Output("pin", "text"),
+    Output("plates", form=list_of(TEXT, 2)),
+    *outputs.numbers("force", "force"),
+    Output("used"),
+    Output("step", "whole"),
+    Output("slip", "displacement"),
+    Output("dissipation", "energy"),
+)
+"""Outputs of a :func:`faying_row`."""
+
+
+RUBBED = (
+    *FAYING[:2],  # the names
+    *(Output(name, form=list_of(NUMBER, 2)) for name in ("force", "slip")),
+    Output("dissipation", "energy"),
+)
+"""Outputs of a faying surface in a state."""
+
+
+def _rubbed(state: JointState) -> list[dict[str, Any]]:
+    """The faying surfaces of a state: force and slip in printed units, energy in J."""
+    unit = joint_units(state.joint)
+    return [
+        {
+            "pin": surface.pin,
+            "plates": [surface.plate, surface.other],
+            "force": unit["force"].factor * at.force,
+            "slip": unit["displacement"].factor * at.slip,
+            "dissipation": at.dissipation,
+        }
+        for surface, at in zip(state.joint.faying, state.faying, strict=True)
+    ]
+
+
+JOINT_STATE = (
+    Output("load_point", "whole", lambda state: state.step + 1),
+    Output("loads", of=_loads, form=map_of(NUMBER, "forces and stresses")),
+    Output(
+        "moved", form=map_of(list_of(NUMBER, 3), "displacement along x and y, and rotation"), of=_moved,
+    ),
+    Output(
+        "contacts", "list", lambda state: [JointContact(state, place) for place in range(len(state.contacts))],
+        parts=CONTACT,
+    ),
+    Output("faying", "list", _rubbed, parts=RUBBED),
+    Output("residuals", form=map_of(NUMBER, "violations of the conditions of contact and equilibrium")),
+)  # fmt: skip
+"""Outputs of a state of a joint."""
+
+BODY = (*NAMES, *fatigue.DAMAGE, Output("over_yield", optional=True))
+"""Outputs of the damage of a plate or of a pin, where the pin goes through the plate."""
+
+
+def _margins(judged: Judged) -> list[dict[str, Any]]:
+    """The margins, the smallest first."""
+    rows = [each.margin for each in judged.margins]
+    joint, states = judged.result.joint, judged.result.states
+    problems = [states.section(joint.place(each.pin, each.plate)).problem for each in judged.margins]
+    found = []
+    for at, problem in zip(judged.margins, problems, strict=True):
+        unit, is_least = units(problem)[at.margin.kind], at.margin is smallest_margin(rows)
+        row = margins.MarginRow(at.margin, problem, unit, is_least, None)
+        found.append(outputs.document(NAMES, at, {}) | outputs.document(margins.ROW, row, {}))
+    return found
+
+
+def _bodies(judged: Judged) -> list[dict[str, Any]]:
+    """The damage of plates and pins, the largest first."""
+    found = []
+    for at in judged.damages:
+        over = judged.over[at.pin, at.plate].get(owner_of(at.found.problem, at.found.body))
+        body = outputs.document(fatigue.DAMAGE, at.found, units(at.found.problem))
+        found.append(outputs.document(NAMES, at, {}) | body | {"over_yield": over})
+    return found
+
+
+JOINT = (
+    Output(
+        "units", form=map_of(TEXT, "unit of each kind of quantity"),
+        of=lambda judged: {name: joint_units(judged.result.joint)[kind].name for name, kind in KINDS.items()},
+    ),
+    Output("nodes", "whole", lambda judged: judged.result.nodes),
+    Output(
+        "harmonics", form=map_of(WHOLE, "highest harmonic of the holes of each plate"),
+        of=lambda judged: dict(
+            zip((each.name for each in judged.result.joint.plates), judged.result.harmonics, strict=True)
+        ),
+    ),
+    Output("complete", "truth", lambda judged: judged.is_complete),
+    Output("snaps", "whole", lambda judged: judged.result.snaps),
+    Output("seconds", of=lambda judged: judged.result.seconds),
+    Output(
+        "largest", "list",
+        lambda judged: [
+            contact_row(judged.result, place)
+            for place in range(len(judged.result.joint.sections) * bool(len(judged.result)))
+        ],
+        parts=LARGEST,
+    ),
+    Output(
+        "largest_faying", "list",
+        lambda judged: [
+            faying_row(judged.result, place)
+            for place in range(len(judged.result.joint.faying) * bool(len(judged.result)))
+        ],
+        parts=FAYING,
+    ),
+    Output(
+        "bending", "list", lambda judged: bending_rows(judged.result) if len(judged.result) else [], optional=True,
+        parts=(
+            Output("pin", "text"), Output("moment", "moment"), Output("stress", "traction"),
+            Output("place", "length"), Output("step", "whole"),
+        ),
+    ),
+    Output("margins", of=_margins, form=list_of(schema_of((*NAMES, *margins.ROW)))),
+    Output(
+        "fatigue", of=lambda judged: None if judged.how is None else judged, optional=True,
+        parts=(
+            Output("how", of=lambda judged: judged.how, parts=fatigue.HOW),
+            Output("error", "text", lambda judged: judged.reason or None, optional=True),
+            Output("bodies", of=_bodies, form=list_of(schema_of(BODY))),
+        ),
+    ),
+    Output(
+        "crack", of=lambda judged: None if judged.crack is None else judged, optional=True,
+        parts=(
+            Output("pin", "text", lambda judged: judged.crack.pin),
+            Output("plate", "text", lambda judged: judged.crack.plate),
+            Output(
+                "error", "text", lambda judged: None if isinstance(judged.growth, Growth) else judged.growth,
+                optional=True,
+            ),
+            Output(
+                "growth", of=lambda judged: judged.growth if isinstance(judged.growth, Growth) else None,
+                words="as fastpin crack --json gives it; places count from the centre of the hole", optional=True,
+                parts=crack.DOCUMENT,
+            ),
+        ),
+    ),
+    Output("states", "list", lambda judged: judged.result.states, parts=JOINT_STATE),
+)  # fmt: skip
+"""Outputs of a :class:`Judged` joint."""
