@@ -226,7 +226,10 @@ QUESTION = outputs.Question(
     words=crack_words,
     bar="{whole} of {total} places",
     failed="no crack is followed",
-    margin_names=("fracture", "growth"),
+    margin_names={
+        "fracture": "toughness over the largest K_I, at the first and at the last length",
+        "growth": "threshold over the range of K_I at the first length",
+    },
     unvaried="no run of a sweep grows a crack",
     keys=BESIDE["crack"].keys,
     outcomes={

@@ -263,8 +263,8 @@ class Question(NamedTuple):
         Text of the progress bar while it is looked for.
     failed : str
         What it means that nothing is found; the reason follows.
-    margin_names : tuple of str
-        Names of its margins of safety.
+    margin_names : mapping of str
+        Its margins of safety by name, each with the meaning of allowable and value.
     unvaried : str
         Why no plan varies its keys.
     keys : tuple of str
@@ -292,7 +292,7 @@ class Question(NamedTuple):
     words: Callable[[Problem, Any], str]
     bar: str
     failed: str
-    margin_names: tuple[str, ...]
+    margin_names: Mapping[str, str]
     unvaried: str
     keys: tuple[str, ...]
     outcomes: Mapping[str, tuple[Output, Callable[[Any, Any], Any]]]

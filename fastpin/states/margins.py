@@ -28,12 +28,8 @@ MARGINS = {
     "walk": "no turn of a bush in its seat over the turn of the last cycle",
     "opening": "pressure of the press fit over the pressure needed to close the seat",
     "findley": "fatigue limit over Findley's parameter in the last cycle",
-    "fatigue": "factor on all stresses until the goal of [fatigue] is missed",
-    "fracture": "toughness over the largest K_I of the crack of [crack], at its first and at its last length",
-    "growth": "threshold over the range of K_I of the crack of [crack] at its first length",
-    "ply": "factor on the stresses at which the first ply of a laminate fails by [strength]",
 }
-"""Kinds of margins by name, each with the meaning of allowable and value."""
+"""Kinds of margins by name, each with the meaning of allowable and value. Questions of a case have further ones."""
 
 
 class Margin(NamedTuple):
@@ -52,7 +48,7 @@ class Margin(NamedTuple):
     loads : mapping
         The loads of that state by name; empty where no single state governs.
     name : str
-        One of :data:`MARGINS`.
+        One of :data:`MARGINS`, or of those of a question.
     owner : str
         The body: "plate", "pin" or "bush".
     part : str

@@ -312,7 +312,8 @@ def _entries(name: str, how: Any) -> dict[str, Any]:
 
 def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read the smallest margin of safety, of all kinds or of one kind, with the sections of the case."""
-    name = section.choice("margin", (LEAST, *MARGINS))
+    of_questions = (name for question in QUESTIONS.values() for name in question.margin_names)
+    name = section.choice("margin", (LEAST, *MARGINS, *of_questions))
     owner = section.choice("body", ("pin", "bush", "plate")) if "body" in section else None
     if name is None or ("body" in section and owner is None):
         return None
