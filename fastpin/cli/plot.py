@@ -110,8 +110,10 @@ def hole_of(
 def _check(options: argparse.Namespace, is_case: bool) -> None:
     """Refuse options that have no effect on this kind of figure."""
     if options.result.suffix.lower() == ".toml" and not is_case:
-        needed = "a result: fastpin run" if "result" in KINDS[options.kind].sources else "a life of wear: fastpin wear"
-        raise InputError(str(options.result), f"is a case file; {options.kind} needs {needed} CASE -o FILE")
+        needed = {"result": "a result: fastpin run", "life": "a life of wear: fastpin wear"}
+        needed["joint"] = "the result of a joint: fastpin joint"
+        words = needed[KINDS[options.kind].sources[0]]
+        raise InputError(str(options.result), f"is a case file; {options.kind} needs {words} CASE -o FILE")
     if is_case and options.states is not None:
         raise InputError("--states", "chooses a state of a result; a case file has none")
     if is_case and options.interface == "seat":

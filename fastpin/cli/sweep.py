@@ -55,7 +55,10 @@ def _read(options: argparse.Namespace, read: Callable[..., T]) -> T:
     """Read a plan with a progress bar, with the outcomes of ``--outcomes``."""
     with Bar(1, READ_POINTS) as progress_bar:
         plan: Any = read(options.plan, progress_to(progress_bar))
-    found: T = plan if options.outcomes is None else plan.with_outcomes(studies.read_outcomes(options.outcomes))
+    if options.outcomes is None:
+        return plan
+    of = getattr(plan, "plan", plan)  # that of a tolerance study
+    found: T = plan.with_outcomes(studies.read_outcomes(options.outcomes, of.base.beside(of.fields)))
     return found
 
 

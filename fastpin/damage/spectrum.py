@@ -26,6 +26,11 @@ from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
+
+class NoChangeError(InputError):
+    """The stresses of a body do not change over a spectrum."""
+
+
 FEW = 100
 """Different states up to which the ends of their zones are points of the edge. Those of 5,000 states are 20,000."""
 
@@ -241,7 +246,7 @@ class SpectrumCount(NamedTuple):
                 places = block.start + np.flatnonzero(chosen[block])
                 found.take(counted, history[:, chosen[block]], spectrum, places, tell_counted)
         if not changes:
-            raise InputError("states", "must have a turning point: their stresses do not change")
+            raise NoChangeError("states", "must have a turning point: their stresses do not change")
         damage, plane = found.damage.reshape(self.theta.shape), found.plane.reshape(self.theta.shape)
         cycles = found.cycles(spectrum, np.array([load_point(state) for state in self.different]))
         where = self.different[0].problem, self.criterion, self.body, self.theta, self.depth

@@ -14,7 +14,7 @@ import numpy as np
 from fastpin.bodies.compliance import LEAST_ORDER, Compliance
 from fastpin.cracks.growing import Growth, planned_growth
 from fastpin.damage.assessed import assessed_fatigue
-from fastpin.damage.spectrum import SpectrumDamage
+from fastpin.damage.spectrum import NoChangeError, SpectrumDamage
 from fastpin.errors import InputError
 from fastpin.joints.bending import bending_moments
 from fastpin.joints.parts import BEAM, Joint, whole_name
@@ -335,8 +335,8 @@ class JointResult(Sequence[JointState]):
 
             try:
                 at_pin = assessed_fatigue(self.states.section(place).read(places), how, tell)
-            except InputError as error:
-                if error.field != "states" or (done == len(known) - 1 and not found):
+            except NoChangeError:
+                if done == len(known) - 1 and not found:
                     raise
                 continue
             found += [SectionDamage(pin.name, plate.name, each) for each in at_pin]

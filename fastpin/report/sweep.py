@@ -82,9 +82,9 @@ def run_columns(plan: Plan, rows: Sequence[TableRow]) -> list[Column]:
 def write_csv(plan: Plan, rows: Sequence[TableRow], path: Path) -> None:
     """Write all varied fields, outcomes and key figures as CSV, with a comment line that names the units.
 
-    Classes are words. Units are SI, with the thickness of each run if all runs have one, or the paper's for
-    dimensionless problems. A function of the user has its own unit. The error bar of NAME is in the column NAME_bar, if
-    any run has one; an infinite bar is "inf".
+    Key figures that a joint lacks have no column. Classes are words. Units are SI, with the thickness of each run if
+    all runs have one, or the paper's for dimensionless problems. A function of the user has its own unit. The error bar of
+    NAME is in the column NAME_bar, if any run has one; an infinite bar is "inf".
 
     Raises
     ------
@@ -94,10 +94,11 @@ def write_csv(plan: Plan, rows: Sequence[TableRow], path: Path) -> None:
     check_writable(path)
     rows, unit = printed_rows(plan, rows)
     named = [(name, unit.get(plan.base.kind(name), PLAIN)) for name in plan.fields]
-    named += [(name, printed_unit(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
+    numbers = (*plan.outcomes, *(name for name in KEY_FIGURES if name in plan.figures))
+    named += [(name, printed_unit(plan, name, unit)) for name in numbers]
     with_bars = [
         each
-        for name in (*plan.outcomes, *KEY_FIGURES)
+        for name in numbers
         for each in (name, bar_column(name))
         if each == name or any(each in row for row in rows)
     ]

@@ -77,7 +77,7 @@ LONGEST_CLASS = 40
 _EXAMPLE = '{ quantity = "peak_shear", take = "largest" }, { cycle = "dissipation" } or { function = "my.py:wear" }'
 
 
-def read_outcomes(path: str | Path) -> Outcomes:
+def read_outcomes(path: str | Path, beside: Mapping[str, Any] = MappingProxyType({})) -> Outcomes:
     """Read all outcomes of a file.
 
     Parameters
@@ -85,6 +85,8 @@ def read_outcomes(path: str | Path) -> Outcomes:
     path : path
         A Python file (.py): all its public functions, each called with a result. The file is not run yet. Or a TOML
         file with a table [outcomes], such as a plan; its other keys are not read.
+    beside : mapping of str, optional
+        What outcomes leave out, and the joint of ``{ joint = ... }``, see :func:`outcomes_from`.
 
     Returns
     -------
@@ -111,7 +113,7 @@ def read_outcomes(path: str | Path) -> Outcomes:
         source = CaseText("").with_tables({"outcomes": tables})
         if not functions:
             source.report("defines no function whose name begins with a letter")
-    found = outcomes_in_text(source, path.parent)
+    found = outcomes_in_text(source, path.parent, beside)
     if source.faults:
         raise CaseFileError(str(path), source.faults)
     return found

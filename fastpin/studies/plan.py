@@ -42,7 +42,7 @@ from fastpin.model.synonyms import closest
 from fastpin.model.unit_systems import checked_system
 from fastpin.studies.identity import canonical_json, id_of_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, bar_faults, has_strengths, outcomes_from, outcomes_in_text
-from fastpin.studies.run_end import KEY_FIGURES
+from fastpin.studies.run_end import JOINT_FIGURES, KEY_FIGURES
 from fastpin.studies.variation import BaseCase, conflict, field_fault, reads_files, varied_name
 
 MAX_RUNS = 100_000
@@ -160,6 +160,11 @@ class Plan:
 
     def __repr__(self) -> str:
         return f"<Plan: {len(self.points):,} points of {', '.join(self.fields)}>"
+
+    @property
+    def figures(self) -> Outcomes:
+        """The key figures that its runs have, by name."""
+        return JOINT_FIGURES if self._base.form == "joint file" else KEY_FIGURES
 
     @property
     def numbers(self) -> Outcomes:

@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 45,
     "constants of modules": 1_251,
     "hidden imports": 0,
-    "lines of code": 52_444,
+    "lines of code": 52_454,
     "lines of code of the core": 18_386,
     "files of the core": 134,
     "functions of the core": 1_967,

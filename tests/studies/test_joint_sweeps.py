@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.errors import CaseFileError
 from fastpin.joints import BaseJoint, JointFile, parse_joint, solve_joint
 from fastpin.pages import write_sweep_report
 from fastpin.report import sweep as report
 from fastpin.storage import load_joint
-from fastpin.studies import parse_plan, parse_tolerances, sweep
+from fastpin.studies import parse_plan, parse_tolerances, read_outcomes, sweep
 from fastpin.studies.plan import Plan
 from scripts.inline import Inline
 from tests.support.faults import faults_of
@@ -117,6 +118,20 @@ def test_a_sweep_of_a_joint_has_its_outcomes(tmp_path: Path) -> None:
     assert "A in sheet" in text
     assert "um" in text
     assert sweep.run(plan, tmp_path / "out", Inline()).ended == 0
+    report.write_csv(plan, rows, tmp_path / "a.csv")
+    head = (tmp_path / "a.csv").read_text().splitlines()[2].split(",")
+    assert {"first", "states", "nodes", "max_pressure", "dissipation", "residual"} < {*head}
+    assert not {"peak_pressure", "stick_width", "Kt"} & {*head}  # a joint has no such number
+
+
+def test_outcomes_come_from_another_file_too(tmp_path: Path) -> None:
+    plan = plan_of(PLAN, tmp_path)
+    (tmp_path / "more.toml").write_text('[outcomes]\nforce = { joint = "force", pin = "B" }\n')
+    found = read_outcomes(tmp_path / "more.toml", plan.base.beside(plan.fields))
+    assert [*plan.with_outcomes(found).outcomes][-1] == "force"
+    (tmp_path / "more.toml").write_text('[outcomes]\nforce = { joint = "force", pin = "C" }\n')
+    with pytest.raises(CaseFileError, match='pin: must be "A" or "B", not "C"'):
+        read_outcomes(tmp_path / "more.toml", plan.base.beside(plan.fields))
 
 
 def test_results_in_files_and_outcomes_that_are_added_later(tmp_path: Path) -> None:
