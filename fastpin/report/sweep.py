@@ -83,8 +83,8 @@ def write_csv(plan: Plan, rows: Sequence[TableRow], path: Path) -> None:
     """Write all varied fields, outcomes and key figures as CSV, with a comment line that names the units.
 
     Key figures that a joint lacks have no column. Classes are words. Units are SI, with the thickness of each run if
-    all runs have one, or the paper's for dimensionless problems. A function of the user has its own unit. The error bar of
-    NAME is in the column NAME_bar, if any run has one; an infinite bar is "inf".
+    all runs have one, or the paper's for dimensionless problems. A function of the user has its own unit. The error bar
+    of NAME is in the column NAME_bar, if any run has one; an infinite bar is "inf".
 
     Raises
     ------
