@@ -207,8 +207,8 @@ def _shear_rate(rates, contact, friction, i):
 
 
 @inner
-def _rate_scales(rates, contact, friction):
-    """The largest traction rate and the largest displacement rate."""
+def _tolerances(rates, contact, friction):
+    """The sizes below which rates of tractions and of displacements are zero, by the largest of these rates."""
     status, n = contact.status, contact.status.size
     traction, length = 0.0, 0.0
     for i in range(n):
@@ -220,7 +220,7 @@ def _rate_scales(rates, contact, friction):
                 traction = max(traction, abs(_shear_rate(rates, contact, friction, i)))
             else:
                 length = max(length, abs(rates[n + i]))
-    return traction, length
+    return 1e-11 * traction, 1e-11 * length
 
 
 @inner
@@ -511,9 +511,8 @@ def follow(tableau, contact, load, queue, friction, fixed, typical, stop, most_e
             return code
         if counts[UPDATES] != measured:  # the rates have changed
             measured = counts[UPDATES]
-            traction_rate, length_rate = _rate_scales(rates, contact, friction)
-            traction_tol, length_tol = 1e-11 * traction_rate, 1e-11 * length_rate  # smaller rates are zero
-            if not (np.isfinite(traction_rate) and np.isfinite(length_rate)):
+            traction_tol, length_tol = _tolerances(rates, contact, friction)
+            if not (np.isfinite(traction_tol) and np.isfinite(length_tol)):
                 return NO_SUPPORT
 
         # Settle the statuses: friction first, then closing, then opening.

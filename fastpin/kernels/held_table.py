@@ -95,12 +95,11 @@ def _extend(row, column, down, on, out):
     for j in range(out.shape[1]):
         out[0, j] = row[j]
     for i in range(1, out.shape[0]):
+        above, here = out[i - 1], out[i]  # two arrays: the loop over them is vector code
         a, b, c, d = down[0, i], down[1, i], down[2, i], down[3, i]
-        out[i, 0] = column[i]
-        for j in range(1, out.shape[1]):
-            out[i, j] = out[i - 1, j - 1] + (
-                (a * on[0, j - 1] + b * on[1, j - 1]) + (c * on[2, j - 1] + d * on[3, j - 1])
-            )
+        here[0] = column[i]
+        for j in range(1, here.size):
+            here[j] = above[j - 1] + ((a * on[0, j - 1] + b * on[1, j - 1]) + (c * on[2, j - 1] + d * on[3, j - 1]))
 
 
 @inner

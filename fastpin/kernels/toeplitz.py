@@ -60,16 +60,18 @@ def _predictor(first, second, cross, F, error):
 
 
 @compiled
-def _fill(before, after, out):
-    """Fill `out` by out[i, j] = out[i - 1, j - 1] + before[:, i - 1] @ after[:, j - 1].
+def _fill(before, on, top, left, out):
+    """Fill a block of `out` by out[i, j] = out[i - 1, j - 1] + before[:, i - 1] @ on[:, j - 1].
 
-    The first row and the first column of `out` are given. `before` is (4, rows - 1), `after` (4, columns - 1).
+    The block begins in the row `top` and the column `left` of `out`. Its first row and its first column are given.
+    `before` is (4, rows - 1), `on` (4, columns - 1).
     """
-    for i in range(1, out.shape[0]):
-        a, b, c, d = before[0, i - 1], before[1, i - 1], before[2, i - 1], before[3, i - 1]
-        for j in range(1, out.shape[1]):
-            step = (a * after[0, j - 1] + b * after[1, j - 1]) + (c * after[2, j - 1] + d * after[3, j - 1])
-            out[i, j] = out[i - 1, j - 1] + step
+    stop = left + 1 + on.shape[1]
+    for i in range(before.shape[1]):
+        a, b, c, d = before[0, i], before[1, i], before[2, i], before[3, i]
+        above, here = out[top + i, left:stop], out[top + i + 1, left:stop]  # in rows of C, the next loop is vector code
+        for j in range(on.shape[1]):
+            here[j + 1] = above[j] + ((a * on[0, j] + b * on[1, j]) + (c * on[2, j] + d * on[3, j]))
 
 
 @compiled
@@ -139,7 +141,7 @@ def invert(first, second, cross, out):
                     row, place = 2 * r + k, 2 * s + k
                     before[k, j], before[2 + k, j] = column[row, j + 1], TURNED[row] * column[row, m - 1 - j]
                     after[k, j], after[2 + k, j] = forward[place, j + 1], -TURNED[place] * forward[place, m - 1 - j]
-            _fill(before, after, out[r * m : (r + 1) * m, s * m : (s + 1) * m])
+            _fill(before, after, r * m, s * m, out)
 
 
 def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndarray:
@@ -267,4 +269,4 @@ def _extend(out: np.ndarray, row: np.ndarray, column: np.ndarray, down: np.ndarr
     """
     if out.size:
         out[0], out[:, 0] = row, column
-        _fill(np.ascontiguousarray(down[1:].T), np.ascontiguousarray(on[:-1].T), out)  # one type: compiled once
+        _fill(np.ascontiguousarray(down[1:].T), np.ascontiguousarray(on[:-1].T), 0, 0, out)  # one type: compiled once

@@ -239,8 +239,7 @@ class HeldColumns:
 
     def _begin(self, table: HeldTable, events: int) -> None:
         """Begin with the nodes held that are closed after so many `events` of the step."""
-        status = self._contact.status
-        room = np.count_nonzero((status != OPEN) & (status != STICK)) + MOST_UPDATES
+        room = np.count_nonzero(self._contact.status & 1) + MOST_UPDATES  # statuses of slipping nodes are odd
         self._table, self._events, self._has_begun = table, events, False
         self.tableau = self.tableau._replace(matrix=table.matrix, order=table.order, left=self._memory.left[:, :room])
 
