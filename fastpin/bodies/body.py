@@ -303,11 +303,14 @@ class PlateBody(BodyBase):
         The distribution of the force on the outer rim, see :func:`fastpin.bodies.harmonics.first`.
     edge_only : bool
         Whether displacements are known at the edge of the hole only, and stresses up to :attr:`reach`.
+    in_joint : bool
+        Whether it is a hole of a joint of several pins, which is followed from before all fits.
     """
 
     title: ClassVar[str] = ""
     is_infinite: ClassVar[bool] = False
     edge_only: ClassVar[bool] = False
+    in_joint: ClassVar[bool] = False
 
     outer_radius: float
     support: str = "uniform"
@@ -406,10 +409,7 @@ class PlateBody(BodyBase):
         return self if table.passes(lambda: self.check(radius, dimensionless)) else None
 
     def contacts(self, pair: MaterialPair, radius: float) -> tuple[dict[str, Any], ...]:
-        """The fields of a problem that differ at the pin and at the seat of a bush that slips; none without one.
-
-        `radius` is that of the hole, m.
-        """
+        """The fields that differ at pin and seat of a bush that slips, in a hole of `radius`, m; none without one."""
         return ()
 
     # -- materials

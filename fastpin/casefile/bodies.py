@@ -29,12 +29,14 @@ BODY_KINDS: dict[str, Kinds] = {"pin_body": PINS, "plate_body": PLATES}
 
 
 class BodySection(Section):
-    """The section of a body. Relative paths in it start in `folder`; `materials` are those with a name."""
+    """A `section` as that of a body. Relative paths in it start in `folder`; `materials` are those with a name."""
 
-    def __init__(self, source: CaseText, name: str, folder: Path, materials: Mapping[str, Material]) -> None:
-        section = source.section(name)
-        super().__init__(source, (name,), section.table, section.present)
-        self.folder, self._source, self._materials = folder, source, materials
+    def __init__(self, source: CaseText, section: Section, folder: Path, materials: Mapping[str, Material]) -> None:
+        super().__init__(source, (section.name,), section.table, section.present)
+        self.folder, self._source, self._section, self._materials = folder, source, section, materials
+
+    def report(self, message: str, *key: str) -> None:
+        self._section.report(message, *key)
 
     def material(self) -> Material | None:
         """The material of a bush. None if it can't be used. The reason is reported."""
@@ -107,7 +109,7 @@ def read_bodies(
     pin: PinBody = SOLID_PIN
     plate: PlateBody = INFINITE_PLATE
     if source.root.table.keys() & BODY_KINDS:
-        pins, plates = (BodySection(source, name, folder, materials) for name in BODY_KINDS)
+        pins, plates = (BodySection(source, source.section(name), folder, materials) for name in BODY_KINDS)
         read_pin, read_plate = pins.body(PINS) or SOLID_PIN, plates.body(PLATES) or INFINITE_PLATE
         if radius is not None:
             whole = "load_parameter" in source.section("contact")

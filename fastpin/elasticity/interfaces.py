@@ -92,23 +92,23 @@ class JointSystem(System):
         radius = seat_problem.hole_radius / problem.hole_radius
         pin = _without_remote(System.build(pin_problem, grids[PIN], force))
         seat = _scaled(System.build(seat_problem, grids[SEAT], force), pin, radius)
-        both, size, m = (pin, seat), nodes.size, 2 * pin.motions
+        both, size, m, beta = (pin, seat), nodes.size, 2 * pin.motions, pin_problem.surfaces.beta_star
         matrix, motion = np.zeros((2 * size, 2 * size), order="F"), np.zeros((2 * size, m))
         loads = np.zeros((2 * size, pin.loads.shape[1]))
         equilibrium, motion_rows = np.zeros((m, 2 * size)), np.zeros((m, m))
         for place, system in enumerate(both):
             rows, own = nodes.rows(place), slice(3 * place, 3 * place + 3)
             matrix[np.ix_(rows, rows)] = system.operator.entries()
-            matrix[np.ix_(rows, nodes.rows(1 - place))] = _coupling(problem, grids, place)
+            around = grids[place], grids[1 - place]
+            matrix[np.ix_(rows, nodes.rows(1 - place))] = across_ring(problem.interfaces, around, place == PIN, beta)
             motion[rows, own], loads[rows] = system.motion, system.loads
             equilibrium[own, rows], motion_rows[own, own] = system.equilibrium, system.motion_rows
         if pin_problem.held:
             # The rotations add up to that of the pin over the lug, and both interfaces carry the same moment. The
             # rotation of the seat is that of a solid pin at the paper's datum: the bush's outer rim turns by more.
-            unit, bush = motion_rows[TURN, TURN], seat_problem.pair.pin
+            unit = motion_rows[TURN, TURN]
             motion_rows[TURN, 3 + TURN] = unit
-            twist = bush.kolosov(seat_problem.pair.plane) / (4.0 * math.pi * bush.shear_modulus)
-            per_shear = twist / pin_problem.surfaces.beta_star * grids[SEAT].weights
+            per_shear = rim_twist(seat_problem) / beta * grids[SEAT].weights
             equilibrium[TURN, nodes.rows(SEAT)[grids[SEAT].size :]] = unit * per_shear
             equilibrium[3 + TURN, nodes.rows(PIN)[grids[PIN].size :]] = pin.weights
         stacked: dict[str, Any] = {
@@ -165,8 +165,9 @@ class JointSystem(System):
 
     def bore_at(self, theta: np.ndarray) -> np.ndarray:
         """Radial displacement of the bore at angles (a,), rad, per traction in the seat, shape (a, 2k)."""
-        around = Grid(theta, closed=True)
-        return _coupling(self.problem, (around, self.nodes.grids[SEAT]), PIN)[: theta.size]
+        around = Grid(theta, closed=True), self.nodes.grids[SEAT]
+        beta = self.alone[PIN].problem.surfaces.beta_star
+        return across_ring(self.problem.interfaces, around, True, beta)[: theta.size]
 
     def without_friction(self) -> System:
         """The same system without friction at both interfaces. Neither turns."""
@@ -245,16 +246,30 @@ def _scaled(seat: System, pin: System, radius: float) -> System:
     )  # fmt: skip
 
 
-def _coupling(problem: Problem, grids: tuple[Grid, Grid], place: int) -> np.ndarray:
-    """Gap and slip of the interface `place` per traction on the other one, through the bush; shape (2n, 2k)."""
-    (pin, seat), (to, other) = problem.interfaces, (grids[place], grids[1 - place])
+def across_ring(of: tuple[Problem, ...], grids: tuple[Grid, Grid], inwards: bool, beta: float) -> np.ndarray:
+    """Gap and slip of one interface of a ring per traction on the other one, through the ring; shape (2n, 2k).
+
+    They count in units of `beta` times the radius of the inner interface.
+
+    Parameters
+    ----------
+    of : (Problem, Problem)
+        The contacts at the bore and at the outer rim of the ring.
+    grids : (Grid, Grid)
+        Nodes of the interface that moves, and of that with the tractions.
+    inwards : bool
+        Whether the interface that moves is the inner one.
+    beta : float
+        1/Pa.
+    """
+    (pin, seat), (to, other) = of, grids
     outer, bush = seat.hole_radius / pin.hole_radius, seat.pair.pin
     order = np.arange(1.0 + harmonics.harmonics_needed(math.sqrt(1.0 / outer)))
-    matrices = harmonics.across(order, outer, bush.kolosov(problem.pair.plane))
-    if place == PIN:
+    matrices = harmonics.across(order, outer, bush.kolosov(seat.pair.plane))
+    if inwards:
         matrices = -outer * matrices.transpose(0, 2, 1)
-    sense = 1.0 if place == PIN else -1.0  # the bush is the outer body at the pin, the inner body in its seat
-    unit = -sense / (4.0 * math.pi * bush.shear_modulus * pin.surfaces.beta_star)
+    sense = 1.0 if inwards else -1.0  # the ring is the outer body at its bore, the inner body in its seat
+    unit = -sense / (4.0 * math.pi * bush.shear_modulus * beta)
     (a, b), (c, d) = matrices.transpose(1, 2, 0)
     hats = to.theta, other.theta, *other.halves
     series = unit * np.array([a + b + c + d, a - b - c + d, a - b + c - d])
@@ -262,3 +277,19 @@ def _coupling(problem: Problem, grids: tuple[Grid, Grid], place: int) -> np.ndar
     gap_of_pressure, slip_of_shear, gap_of_shear = fourier.hat_columns(*hats, series)
     slip_of_pressure = fourier.hat_columns(*hats, np.array([0.0 * a, 0.0 * a, -unit * (a + b - c - d)]))[2]
     return np.block([[gap_of_pressure, gap_of_shear], [slip_of_pressure, slip_of_shear]])
+
+
+def rim_twist(seat: Problem) -> float:
+    """How much more the outer rim of a ring turns than a solid pin at the paper's datum, per int T dtheta, 1/Pa."""
+    ring = seat.pair.pin
+    return ring.kolosov(seat.pair.plane) / (4.0 * math.pi * ring.shear_modulus)
+
+
+def moved_twice(seat: Problem) -> float:
+    """Less the displacement of the bore of a ring over its outer rim per force, 1/Pa, under uniform tractions on both.
+
+    The displacements at both interfaces have it.
+    """
+    ring, outer = seat.pair.pin, seat.hole_radius / seat.pin_body.bore_radius
+    first = harmonics.first(outer, ring.kolosov(seat.pair.plane), "uniform")
+    return float(first.translation(outer)[1] / (4.0 * math.pi * ring.shear_modulus))

@@ -282,7 +282,7 @@ class System:
         return tuple(each.nodes for each in self.interfaces if is_free)
 
     @cached_property
-    def bonded(self) -> slice:
+    def bonded(self) -> slice | np.ndarray:
         """The nodes that must stick: the seat of a bonded bush whose seat is an interface of its own."""
         return slice(0)
 

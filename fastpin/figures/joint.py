@@ -83,9 +83,9 @@ def joint_of(result: JointResult, state: int = -1) -> Plot:
     """Draw every plate with its holes at one state: hoop stress, contact, and the force of each pin.
 
     The ring round a hole shows the hoop stress on its edge. Thick arcs on the edge are in contact: stick is black, slip
-    is orange. Arrows are the forces of the pins on the plate. At each hole the slice with the largest hoop stress is
-    drawn. Lengths are in millimetres, to scale. `state` is the number of the state, from 0; negative numbers count from
-    the end.
+    is orange. A bush has a second edge, its bore. Arrows are the forces of the pins on the plate. At each hole the
+    slice with the largest hoop stress is drawn. Lengths are in millimetres, to scale. `state` is the number of the
+    state, from 0; negative numbers count from the end.
     """
     _with_states(result)
     chosen = result[whole_number("state", state, -len(result), len(result) - 1)]
@@ -199,7 +199,8 @@ def _extent(state: JointState) -> tuple[float, float, float, float]:
     joint = state.joint
     points = [pin.at for pin in joint.pins]
     points += [z for plate in joint.plates for part in plate.outline for z in part.at(np.linspace(0.0, 1.0, 9))]
-    margin = 2.0 * RING * joint.radius if any(plate.is_infinite for plate in joint.plates) else 0.5 * joint.radius
+    radius = max(joint.radius_in(plate) for plate in joint.plates)
+    margin = 2.0 * RING * radius if any(plate.is_infinite for plate in joint.plates) else 0.5 * radius
     x, y = np.real(points), np.imag(points)
     return x.min() - margin, x.max() + margin, y.min() - margin, y.max() + margin
 
@@ -210,7 +211,7 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
     height = max((look.width - 1.6) * (top - bottom) / (right - left), 0.8)
     sheet = look.sheet([min(height, 6.0)] * len(joint.plates), extra=1.3, sharex=True)
     theta = np.linspace(-np.pi, np.pi, AROUND)
-    hoops = [contact.hoop_stress("plate", theta) for contact in state.contacts]
+    hoops = [(contact.seat or contact).hoop_stress("plate", theta) for contact in state.contacts]
     of_joint, size = joint_units(joint), _length(joint)
     factor, unit = of_joint["traction"].scale([float(np.abs(hoop).max()) for hoop in hoops])
     largest = factor * max(float(np.abs(hoop).max()) for hoop in hoops) or 1.0
@@ -229,7 +230,8 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
         for pin in joint.pins_of(plate):
             k = max(joint.places(pin.name, plate.name), key=lambda k: float(np.abs(hoops[k]).max()))
             _draw_hole(panel, state, k, plate, theta, factor * hoops[k], norm, longest or 1.0)
-            down = 0.55 * pin.radius if is_wide else -1.1 * RING * pin.radius
+            radius = joint.radius_in(plate)
+            down = 0.55 * radius if is_wide else -1.1 * RING * radius
             at, style = size.factor * (pin.at - 1j * down), "center" if is_wide else "bottom"
             panel.text(at.real, at.imag, pin.name, ha="center", va=style, fontsize=7.5, parse_math=False)
         panel.set_aspect("equal")
@@ -265,20 +267,22 @@ def _draw_hole(
     longest: float,
 ) -> None:
     """Draw one hole: the ring of the hoop stress, the zones of contact, and the force of its pin."""
-    contact, (pin, _) = state.contacts[place], state.joint.sections[place]
-    radius, centre = _length(state.joint).factor * pin.radius, _length(state.joint).factor * pin.at
+    contact, (pin, of), factor = state.contacts[place], state.joint.sections[place], _length(state.joint).factor
+    radius, centre = factor * pin.hole_radius(of.name), factor * pin.at
     ring = centre + radius * np.multiply.outer([1.0, RING], np.exp(1j * theta))
     panel.pcolormesh(
         ring.real, ring.imag, np.vstack([hoop, hoop]), cmap="RdBu_r", norm=norm, shading="gouraud", rasterized=True
     )
-    edge = centre + radius * np.exp(1j * theta)
-    panel.plot(edge.real, edge.imag, color="0.2", linewidth=0.8)
-    half = 0.5 * float(np.diff(contact.theta[:2])[0])
-    sticks, slips = contact.status == STICK, (contact.status != STICK) & (contact.status != OPEN)
-    for nodes, colour in ((sticks, "black"), (slips, COLOURS[1])):
-        turns = np.add.outer(contact.theta[nodes], [*np.linspace(-half, half, 5), np.nan]).ravel()
-        arcs = centre + 0.97 * radius * np.exp(1j * turns)  # one line with gaps, so that an SVG is small
-        panel.plot(arcs.real, arcs.imag, color=colour, linewidth=3.0, solid_capstyle="butt")
+    for each in filter(None, (contact.seat, contact)):  # a bush and its bore, or the hole
+        own = factor * each.problem.hole_radius
+        edge = centre + own * np.exp(1j * theta)
+        panel.plot(edge.real, edge.imag, color="0.2", linewidth=0.8)
+        half = 0.5 * float(np.diff(each.theta[:2])[0])
+        sticks, slips = each.status == STICK, (each.status != STICK) & (each.status != OPEN)
+        for nodes, colour in ((sticks, "black"), (slips, COLOURS[1])):
+            turns = np.add.outer(each.theta[nodes], [*np.linspace(-half, half, 5), np.nan]).ravel()
+            arcs = centre + 0.97 * own * np.exp(1j * turns)  # one line with gaps, so that an SVG is small
+            panel.plot(arcs.real, arcs.imag, color=colour, linewidth=3.0, solid_capstyle="butt")
     force = complex(*state.force(pin.name, plate.name)) / longest
     if abs(force) > 0.02:
         head = centre + 0.8 * radius * force

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+from fastpin.bodies import Bushing
 from fastpin.joints.parts import BEAM, Clamp, Joint, JointPin, JointPlate
 from fastpin.lugs.outline import Hole, Part, PartLoad
 from fastpin.model.fatigue import FatigueConstants
@@ -25,7 +26,13 @@ def document_of(value: Any) -> Any:
         return {name: document_of(each) for name, each in value.items()}
     if isinstance(value, tuple):
         return [document_of(each) for each in value]
-    return {one.name: document_of(getattr(value, one.name)) for one in fields(value)} if is_dataclass(value) else value
+    if not is_dataclass(value):
+        return value
+    found = {one.name: document_of(getattr(value, one.name)) for one in fields(value)}
+    for name in ("bush", "inside"):  # joints without bushes stay as they were; all bushes have the plate outside
+        if not found.get(name, True) or name == "inside":
+            found.pop(name, None)
+    return found
 
 
 def joint_from(document: Mapping[str, Any]) -> Joint:
@@ -56,11 +63,21 @@ def joint_from(document: Mapping[str, Any]) -> Joint:
                 "material": _material(each["material"]),
                 "clamp": None if each["clamp"] is None else Clamp(**each["clamp"]),
                 "heads": each["heads"] if each["flexibility"] == BEAM else None,  # older files have 0 there
+                "bush": _bushes(each.get("bush")),
             },
         )
         for each in document["pins"]
     ]
     return Joint(**{**document, "plates": plates, "pins": pins})
+
+
+def _bushes(table: Mapping[str, Any] | None) -> Bushing | dict[str, Bushing] | None:
+    """The bush of all plates, or of each plate."""
+    if table is None:
+        return None
+    if isinstance(table.get("outer_radius", {}), float):
+        return Bushing(**{**table, "material": _material(table["material"])})
+    return {name: _bushes(each) for name, each in table.items()}  # type: ignore[misc]
 
 
 def _placed(kind: Any, table: Mapping[str, Any]) -> Any:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from fastpin.bodies.body import Harmonics, Remote, Rim
-from fastpin.bodies.compliance import Compliance, complex_coefficients, translation_rows
+from fastpin.bodies.compliance import LEAST_ORDER, Compliance, complex_coefficients, translation_rows
 from fastpin.bodies.walls import PlateWalls
 from fastpin.model.checks import set_fields
+from fastpin.model.materials import Plane
+from fastpin.states.state import State
 
 ACTING = ("incoming", "others", "loads", "rubbed")
 """Fields of a hole that differ from state to state."""
@@ -38,6 +40,8 @@ class HoleInPlate(Compliance):
         Coefficients of the uniform traction by friction of faying surfaces on this hole, Pa.
     """
 
+    in_joint = True
+
     incoming: np.ndarray = field(default_factory=lambda: np.zeros(0))
     others: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     loads: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -52,12 +56,22 @@ class HoleInPlate(Compliance):
         own = self.incoming, self.others, self.loads, self.pinned, self.rubbed
         return type(self), (*super().__reduce__()[1], *own)
 
+    @classmethod
+    def alone(cls, nu: float, plane: Plane, radius: float) -> HoleInPlate:
+        """The hole of an infinite plate in which no other pin acts."""
+        return cls(nu, plane, radius, np.zeros((2 + 4 * LEAST_ORDER,) * 2))
+
     def under(self, **acting: np.ndarray) -> HoleInPlate:
         """The same hole with other ``incoming``, ``others``, ``loads`` and ``rubbed``. Both share the matrix."""
         found = object.__new__(type(self))
         set_fields(found, **{each.name: getattr(self, each.name) for each in fields(self)})
         found._set_acting(**acting)
         return found
+
+    @property
+    def at_rest(self) -> HoleInPlate:
+        """The same hole in which no other pin and no load acts."""
+        return self.under(**{name: np.zeros_like(getattr(self, name)) for name in ACTING})
 
     def _set_acting(self, **acting: np.ndarray) -> None:
         for name, values in acting.items():
@@ -113,3 +127,17 @@ class HoleInPlate(Compliance):
     def add_edge_hoop(self, hoop: np.ndarray, rim: Rim, tractions: Harmonics, remote: Remote, at: np.ndarray) -> None:
         super().add_edge_hoop(hoop, rim, tractions, remote, at)
         hoop += (1.0 - 4.0 / (1.0 + rim.kolosov)) * np.real(self._rubbed_by * np.exp(-1j * at))
+
+
+def in_hole(state: State, hole: HoleInPlate) -> State:
+    """The state of a pin, and of its bush, in another hole."""
+    bush = state.problem.plate_body.bush
+    problem, at_rest = (
+        replace(state.problem, plate_body=each if bush is None else replace(bush, inside=each))
+        for each in (hole, hole.at_rest)
+    )
+    seat = None if state.seat is None else replace(state.seat, problem=problem.interfaces[1])
+    found = replace(state, problem=problem, seat=seat)
+    for each in filter(None, (found, seat)):  # one joint before any load for all states
+        each.__dict__["_joint"] = at_rest, state.grid
+    return found

@@ -9,8 +9,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
+from fastpin.bodies import Bushing
+from fastpin.bodies.body import PlateBody
+from fastpin.bodies.kinds import INFINITE_PLATE
 from fastpin.errors import InputError
 from fastpin.joints.bending import Coherence, beam, springs
+from fastpin.joints.hole import HoleInPlate
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad
 from fastpin.model import checks, unit_systems
 from fastpin.model.loads import LOADS, REMOTE
@@ -215,7 +219,7 @@ class JointPin:
         Its place x + iy, m.
     material : Material
     radius : float
-        Radius of its holes, m.
+        Radius of its holes, m: of the bore where it has a bush.
     plates : sequence of str
         Names of the plates that it goes through, in their order.
     clearance : float or mapping of str to float
@@ -228,6 +232,12 @@ class JointPin:
         slices of its plates, which lie on one another in their order.
     clamp : Clamp, optional
         The clamp-up of its plates.
+    bush : Bushing or mapping of str to Bushing, optional
+        A bush round the pin in each plate, or in the plates that are named; in a plate with slices one in each slice.
+        The pin touches the bush, with its clearance and friction. The bush touches the plate, with its own interference
+        and friction. Its outer radius is that of the hole in the plate. A bonded one needs a press fit that holds it.
+        A sleeve that is shrunk on the pin is a bush, too: the clearance of the pin is negative then, and the
+        interference is minus the clearance of the sleeve in the plate.
     heads : {"free", "held"} or float, optional
         Of a beam: its ends turn freely, as they do unless it is given; or do not turn, or by the angle of a moment:
         N m/rad. It is kept as a number, 0 or infinite.
@@ -248,6 +258,7 @@ class JointPin:
     flexibility: float | Literal["beam"] = 0.0
     clamp: Clamp | None = None
     heads: Any = None
+    bush: Bushing | Mapping[str, Bushing] | None = None
 
     def __post_init__(self) -> None:
         checks.check_fields(self, _name, "name")
@@ -272,6 +283,13 @@ class JointPin:
             checks.instance("clamp", self.clamp, Clamp, "a Clamp")
             if len(self.plates) == 1:
                 raise InputError("clamp", f"pin {self.name} goes through one plate: it clamps no two plates together")
+        if isinstance(self.bush, Mapping):
+            for plate, bush in self.bush.items():
+                checks.known_name("bush", plate, self.plates)
+                _check_bush(f"bush.{plate}", bush)
+            checks.set_fields(self, bush=ReadOnlyDict(self.bush))
+        elif self.bush is not None:
+            _check_bush("bush", self.bush)
         for name in ("clearance", "friction"):
             value = getattr(self, name)
             if isinstance(value, Mapping):
@@ -290,6 +308,17 @@ class JointPin:
         checks.known_name("plate", plate, self.plates)
         value = getattr(self, checks.choice("name", name, ("clearance", "friction")))
         return float(value[plate] if isinstance(value, Mapping) else value)
+
+    def bush_in(self, plate: str) -> Bushing | None:
+        """The bush in a plate, or in a slice; None without one."""
+        plate = whole_name(checks.string("plate", plate))
+        checks.known_name("plate", plate, self.plates)
+        return self.bush.get(plate) if isinstance(self.bush, Mapping) else self.bush
+
+    def hole_radius(self, plate: str) -> float:
+        """Radius of the hole in a plate, or in a slice, m: of the pin's own, or that of its bush."""
+        bush = self.bush_in(plate)
+        return self.radius if bush is None else bush.outer_radius
 
 
 class Faying(NamedTuple):
@@ -342,9 +371,6 @@ class Joint:
         for pin in self.pins:
             for name in pin.plates:
                 checks.known_name(f"pin.{pin.name}.plates", name, names[: len(self.plates)])
-            if not math.isclose(pin.radius, self.radius, rel_tol=1e-9):
-                words = f"all pins of a joint must have one radius: {pin.name} has {pin.radius:g} m"
-                raise InputError(f"pin.{pin.name}.radius", f"{words}, {self.pins[0].name} has {self.radius:g} m")
         for plate in self.plates:
             self._check_holes(plate)
             others = [other for other in self.plates if plate.is_infinite and other is not plate and not other.floats]
@@ -376,19 +402,28 @@ class Joint:
         if plate.floats and len(through) < 2:
             words = f"the plate {plate.name} is free and has one pin: nothing keeps it from turning"
             raise InputError(f"plate.{plate.name}.moves", words)
-        least = 2.0 * LEAST_PITCH * self.radius
+        for pin in through:
+            radii = pin.hole_radius(plate.name), self.radius_in(plate)
+            if not math.isclose(*radii, rel_tol=1e-9):
+                words = f"all holes of {plate.name} must have one radius: that of {pin.name} has {radii[0]:g} m"
+                raise InputError(f"pin.{pin.name}.radius", f"{words}, that of {through[0].name} has {radii[1]:g} m")
+        least = 2.0 * LEAST_PITCH * self.radius_in(plate)
         for one, other in itertools.combinations(through, 2):
             apart = abs(one.at - other.at)
             if checks.is_above(least, apart):
                 words = f"the holes of {one.name} and {other.name} in {plate.name} are {apart:.4g} m apart"
                 raise InputError(f"pin.{other.name}.at", f"{words}; they need {LEAST_PITCH:g} diameters, {least:.4g} m")
         if not plate.is_infinite:
-            plate.lug({pin.name: pin.at for pin in through}, self.radius, self.plane)
+            plate.lug({pin.name: pin.at for pin in through}, self.radius_in(plate), self.plane)
 
     @property
     def radius(self) -> float:
-        """Radius of all holes, m."""
+        """Radius of the first pin, m: the unit of length of the solution."""
         return self.pins[0].radius
+
+    def radius_in(self, plate: JointPlate) -> float:
+        """Radius of all pinned holes of a plate, m."""
+        return self.pins_of(plate)[0].hole_radius(plate.name)
 
     @cached_property
     def sections(self) -> tuple[tuple[JointPin, JointPlate], ...]:
@@ -457,7 +492,7 @@ class Joint:
         if of.is_infinite:
             raise InputError("plate", f"{plate} is infinite: give it an outline, and its stress is known everywhere")
         others = {other.name: other.at for other in self.pins_of(of) if other is not own}
-        return of.lug({own.name: own.at} | others, self.radius, self.plane)
+        return of.lug({own.name: own.at} | others, self.radius_in(of), self.plane)
 
     @cached_property
     def load_names(self) -> tuple[str, ...]:
@@ -476,14 +511,22 @@ class Joint:
         return load.rsplit(".", 1)[1] in REMOTE_NAMES
 
     def problem(self, pin: JointPin, plate: JointPlate) -> Problem:
-        """The contact of a pin in one plate, as if that plate were infinite."""
+        """The contact of a pin in one plate, with its bush there, as if that plate were infinite."""
         checks.instance("pin", pin, JointPin, "a JointPin")
         checks.instance("plate", plate, JointPlate, "a JointPlate")
-        pair = MaterialPair(pin.material, plate.material, self.plane)
+        pair, bush = MaterialPair(pin.material, plate.material, self.plane), pin.bush_in(plate.name)
+        body: PlateBody = INFINITE_PLATE
+        try:
+            if bush is not None:
+                body = replace(bush, inside=HoleInPlate.alone(plate.material.nu, self.plane, bush.outer_radius))
+                body.check(pin.radius)
+                body.check_pair(pair, pin.radius, False)
+        except InputError as error:
+            raise InputError(f"pin.{pin.name}.bush.{error.field}", f"in {plate.name}: {error.reason}") from None
         try:
             return Problem(
                 pair, pin.radius, pin.value_in("clearance", plate.name), pin.value_in("friction", plate.name),
-                pin_load="body", thickness=plate.thickness, unit_system=self.unit_system,
+                pin_load="body", plate_body=body, thickness=plate.thickness, unit_system=self.unit_system,
             )  # fmt: skip
         except InputError as error:
             raise InputError(f"pin.{pin.name}.{error.field}", f"in {plate.name}: {error.reason}") from None
@@ -526,6 +569,13 @@ def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], 
 def whole_name(plate: str) -> str:
     """The name of a plate from its own, or from that of a slice."""
     return plate.partition(".")[0]
+
+
+def _check_bush(field_: str, bush: object) -> None:
+    """Check a bush, of which the joint has the plate round it."""
+    found = checks.instance(field_, bush, Bushing, "a Bushing")
+    if found.inside != INFINITE_PLATE:
+        raise InputError(f"{field_}.inside", "the plate of the joint is round the bush: leave it out")
 
 
 def _heads(field_: str, value: object) -> float:

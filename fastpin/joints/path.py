@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.joints.system import CENTRING, PinsSystem
+from fastpin.joints.conditions import CENTRING
+from fastpin.joints.system import PinsSystem
 from fastpin.kernels import exchange
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.configuration import Configuration, accept_solution, resting_status, solve_statuses
-from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, SolveError
+from fastpin.solver.errors import OPENED, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.solver.increment import accepted, implicit_step
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.slip_tally import SlipTally
@@ -49,9 +50,10 @@ def unloaded(system: PinsSystem) -> Configuration:
     n, zeros, load = system.grid.size, np.zeros(system.grid.size), np.zeros(system.loads.shape[1])
     load[-1] = 1.0
     gap, clamped = np.maximum(system.initial_gap, 0.0), np.arange(n) >= system.nodes.parts[-1].stop
+    stuck = clamped | system.bonded
     return Configuration(
         pressure=1.0 * clamped, shear=zeros.copy(), gap=gap, slip=zeros.copy(),
-        status=np.where(clamped, STICK, OPEN).astype(np.int8),
+        status=np.where(stuck, STICK, OPEN).astype(np.int8),
         motion=np.zeros(system.motions), load=load, origin=np.zeros(2), rest=np.zeros(system.motions),
         rest_gap=gap.copy(), rest_slip=zeros.copy(), slip_tally=SlipTally.empty(n),
     )  # fmt: skip
@@ -76,7 +78,7 @@ def follow(
     """
     before, done, snaps = start.load, 0.0, 0
     now, pins = start, slice(system.nodes.parts[-1].stop)
-    if not now.closed[pins].any() and np.any((now.gap[pins] == 0.0) & (system.friction[pins] > 0.0)):
+    if not (now.closed & ~system.bonded)[pins].any() and np.any((now.gap[pins] == 0.0) & (system.friction[pins] > 0.0)):
         now, done = _first_of_neat(system, now, load)
     while done < 1.0:
         begin, step = done, None
@@ -89,16 +91,20 @@ def follow(
             now = now if step is None else step.now
             done = begin + lost.fraction * (1.0 - begin)
             snaps += 1
-            beyond = None if snaps > MOST_SNAPS else _beyond(system, now, before, load, done)
+            is_lost = lost.code == exchange.UNBONDED or snaps > MOST_SNAPS
+            beyond = None if is_lost else _beyond(system, now, before, load, done)
             if beyond is None:
-                raise _error(lost, done) from None
+                raise _error(system, lost, done) from None
             now, done = beyond
     return now, snaps
 
 
-def _error(lost: StepLostError, done: float) -> SolveError:
+def _error(system: PinsSystem, lost: StepLostError, done: float) -> SolveError:
     if lost.code == exchange.NO_SUPPORT:
-        error: SolveError = NoEquilibriumError("nothing holds a pin or a plate: the joint is a mechanism")
+        bodies = "a pin, a bush or a plate" if system.rings else "a pin or a plate"
+        error: SolveError = NoEquilibriumError(f"nothing holds {bodies}: the joint is a mechanism")
+    elif lost.code == exchange.UNBONDED:
+        error = NoEquilibriumError(OPENED)
     else:
         error = ConvergenceError("the stick and slip zones did not settle")
     error.fraction = done
@@ -137,7 +143,7 @@ def _beyond(
         for jump in JUMPS if way in fewer else JUMPS[1:]:
             reached = min(done + jump, 1.0)
             found = way(system.resting(now.rest), now, before + reached * (after - before))
-            if found is not None:
+            if found is not None and (found.status[system.bonded] == STICK).all():
                 return found, reached
             if reached == 1.0:
                 break

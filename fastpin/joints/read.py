@@ -11,10 +11,12 @@ import re
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
+from fastpin.bodies import Bushing
 from fastpin.casefile.beside import read_assessment, read_crack
+from fastpin.casefile.bodies import BodySection
 from fastpin.casefile.lug import limits_of, point_of
 from fastpin.casefile.materials import read_material
-from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text
+from fastpin.casefile.toml_text import CaseText, Inside, Section, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.joints.parts import REMOTE_NAMES, Clamp, Joint, JointPin, JointPlate, tate_rosenfeld
 from fastpin.joints.result import SectionCrack, check_crack, check_fatigue
@@ -52,6 +54,7 @@ JOINT_KEYS: dict[str, tuple[str, ...]] = {
         "friction",
         "flexibility",
         "heads",
+        "bush",
         "clamp",
     ),
     "load": (),
@@ -60,12 +63,16 @@ JOINT_KEYS: dict[str, tuple[str, ...]] = {
 }
 """Sections of a joint file and their keys. The keys of [[load]] are the loads of the joint."""
 
+BUSH_KEYS = (*MATERIAL_KEYS, "outer_radius", "interference", "bonded", "friction")
+"""Keys of a bush in [[pin]]."""
+
 _KINDS: dict[str, Any] = {
     "plate": MATERIAL | of("length", "thickness", "x", "y", "start") | {"parts": of("length", "to", "through")},
     "pin": MATERIAL
     | of("length", "at", "diameter")
     | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility", "heads": "moment"}
-    | {"clamp": {"force": "force", "flexibility": "flexibility"}},
+    | {"clamp": {"force": "force", "flexibility": "flexibility"}}
+    | {"bush": CASE["plate_body"] | {ANY: CASE["plate_body"]}},
     "fatigue": CASE["fatigue"],
     "crack": CASE["crack"],
 }
@@ -158,7 +165,7 @@ def joint_file_in(source: CaseText) -> JointFile | None:
         section, name, key = (*error.field.split(".", 2), "", "")[:3]
         named = [block for block in source.blocks(section) if name in _names("name", block.value("name"))]
         if named:
-            named[0].report(str(error), *filter(None, [key]))
+            named[0].report(str(error), *filter(None, key.split(".")))
         else:
             source.report(str(error), "pin")
         return None
@@ -272,9 +279,40 @@ def _pins(source: CaseText, block: Section, plates: list[JointPlate | None]) -> 
         return [None]
     common = {"material": material, "radius": 0.5 * diameter, "plates": through, "flexibility": flexibility}
     common["clamp"] = clamp
+    if "bush" in block:
+        common["bush"] = _bushes(source, block, through)
+        if common["bush"] is None:
+            return [None]
     for key in (key for key in ("clearance", "friction", "heads") if key in block):
         common[key] = block.value(key)
     return [_made(block, JointPin, name=name, at=at, **common) for name, at in zip(names, places, strict=True)]
+
+
+def _bushes(source: CaseText, block: Section, through: list[str]) -> Bushing | dict[str, Bushing] | None:
+    """The bush of all plates, or of each plate that is named; None if one is wrong (reported)."""
+    table = block.value("bush")
+    if not isinstance(table, dict):
+        block.report(f"bush: must be a table {{ material, outer_radius, ... }}, not {as_toml(table)}", "bush")
+        return None
+    inner = Inside(source, block, "bush", table)
+    if not any(isinstance(one, dict) for name, one in table.items() if name not in BUSH_KEYS):
+        return _bush(source, inner, " in bush")
+    inner.check_keys(through, " in bush", f"; the plates of the pin are {', '.join(through)}")
+    each = {name: inner.value(name) for name in through if name in table}
+    for name in (name for name, one in each.items() if not isinstance(one, dict)):
+        block.report(f"bush.{name}: must be a table {{ material, outer_radius, ... }}", "bush", name)
+        return None
+    found = {name: _bush(source, Inside(source, inner, name, one), f" in bush.{name}") for name, one in each.items()}
+    return None if None in found.values() else found  # type: ignore[return-value]
+
+
+def _bush(source: CaseText, table: Section, where: str) -> Bushing | None:
+    """A bush, with the keys of a bush in a case file; None if it is wrong (reported)."""
+    table.check_keys(BUSH_KEYS, where)
+    if "outer_radius" not in table:
+        table.report(f"outer_radius is missing{where}")
+        return None
+    return Bushing.read(BodySection(source, table, Path(), MATERIALS))
 
 
 def _flexibility(

@@ -17,6 +17,7 @@ from fastpin.damage.assessed import assessed_fatigue
 from fastpin.damage.spectrum import NoChangeError, SpectrumDamage
 from fastpin.errors import InputError
 from fastpin.joints.bending import bending_moments
+from fastpin.joints.hole import in_hole
 from fastpin.joints.parts import BEAM, Joint, whole_name
 from fastpin.model import crack as crack_model
 from fastpin.model.assessment import FatigueAssessment, check_assessment
@@ -32,6 +33,37 @@ BALANCED = 1e-3
 
 The weak springs of loose pins bring 1e-4.
 """
+
+
+class JointInterface(NamedTuple):
+    """A pin in a plate, or its bush there, which may slip or open.
+
+    Attributes
+    ----------
+    pin, plate : str
+        Their names; a bush is called "bush of A".
+    place : int
+        The place of the pin in the plate among ``joint.sections``.
+    is_bush : bool
+    """
+
+    pin: str
+    plate: str
+    place: int
+    is_bush: bool
+
+    def of(self, contact: State) -> State:
+        """The state of the interface in that of the pin in the plate."""
+        return contact.seat if self.is_bush and contact.seat is not None else contact
+
+
+def interfaces_of(joint: Joint) -> list[JointInterface]:
+    """All interfaces, in the order of ``joint.sections``."""
+    found = []
+    for place, (pin, plate) in enumerate(joint.sections):
+        names = (pin.name, f"bush of {pin.name}")[: len(joint.problem(pin, plate).interfaces)]
+        found += [JointInterface(name, plate.name, place, name != pin.name) for name in names]
+    return found
 
 
 class SectionDamage(NamedTuple):
@@ -88,9 +120,10 @@ class JointState:
     load : dict of str to float
         Forces, N, and stresses, Pa, by the names of ``joint.load_names``.
     contacts : tuple of State
-        The contact of each pin in each of its plates, in the order of ``joint.sections``. Their loads P, Q and M are
-        what the pin passes on to this plate. Slip counts from the place where the pin, straight from the middle, first
-        rested on the hole. Work and energy are NaN: they belong to the whole joint.
+        The contact of each pin in each of its plates, in the order of ``joint.sections``. That of its bush in the plate
+        is the ``seat``. Their loads P, Q and M are what the pin passes on to this plate. Slip counts from the place
+        where the pin, straight from the middle, first rested on the hole. Work and energy are NaN: they belong to the
+        whole joint.
     forces : ndarray, shape (sections, 2)
         Force of the pin on the plate, or on the slice, along x and y, N.
     moved : ndarray, shape (plates, 3)
@@ -256,9 +289,8 @@ class JointResult(Sequence[JointState]):
         outline = json.dumps(lug.document())
 
         def knowing(state: State) -> State:
-            hole: Any = state.problem.plate_body  # a HoleInPlate
-            body = replace(hole, outline=outline, pinned=pinned)
-            return replace(state, problem=replace(state.problem, plate_body=body))
+            hole: Any = state.problem.plate_body.lug  # a HoleInPlate
+            return in_hole(state, replace(hole, outline=outline, pinned=pinned))
 
         return knowing
 
@@ -412,9 +444,12 @@ def check_crack(joint: Joint, crack: SectionCrack, corners: int) -> None:
     Raises
     ------
     InputError
-        If the plate is infinite, the crack leaves it, or is in a pin, there is no law of growth, or one corner only.
+        If the plate is infinite or has a bush, the crack leaves it, or is in a pin, there is no law of growth, or one
+        corner only.
     """
     lug, _ = joint.lug(crack.pin, crack.plate)
+    if joint.sections[joint.place(crack.pin, crack.plate)][0].bush_in(crack.plate) is not None:
+        raise InputError("pin", f"{crack.pin} has a bush in {crack.plate}: cracks need a hole without one")
     nothing = np.zeros((2 + 4 * LEAST_ORDER,) * 2)  # the outline is what counts
     body = Compliance(lug.nu, lug.plane, lug.hole_radius, nothing, outline=json.dumps(lug.document()))
     problem = joint.problem(*joint.sections[joint.place(crack.pin, crack.plate)])

@@ -10,14 +10,16 @@ from typing import Any, Protocol, Self
 
 import numpy as np
 
+from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
+from fastpin.joints.conditions import JointLoads, Motion, PinSection, RingBetween
 from fastpin.joints.faying import FayingSurface
 from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import MOVES, Joint, JointPlate, whole_name
 from fastpin.joints.path import follow, unloaded
 from fastpin.joints.result import JointResult, JointState, JointStates
 from fastpin.joints.states import Since, StateMaker
-from fastpin.joints.system import JointLoads, Motion, PinSection, PinsSystem, build
+from fastpin.joints.system import PinsSystem, build
 from fastpin.lugs.plates import harmonic_sizes
 from fastpin.lugs.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
 from fastpin.model.angles import BOTTOM
@@ -223,8 +225,8 @@ class JointTask:
                 if self.progress is not None:
                     self.progress(step + part, len(values))
 
-            plates = [_plate_compliance(joint, plate, self.harmonics, report) for plate in joint.plates]
-            system, unit = _joint_system(joint, plates, values, self.nodes)
+            plates = [plate_compliance(joint, plate, self.harmonics, report) for plate in joint.plates]
+            system, unit = joint_system(joint, plates, values, self.nodes)
             since = Since.start(len(system.sections), len(system.faying)) if start is None else start.since.copy()
             maker, memory = StateMaker(joint, system, plates, since), TableauMemory(system)
             recorder.begin(maker.holes)
@@ -279,11 +281,11 @@ def load_values(joint: Joint, corners: Sequence[Mapping[str, float]]) -> np.ndar
     return values
 
 
-def _plate_compliance(
+def plate_compliance(
     joint: Joint, plate: JointPlate, harmonics: int | None, report: Callable[[float], None]
 ) -> HolesCompliance:
     """The compliance of the pinned holes of a plate. That of an outline takes seconds, and is kept for equal plates."""
-    pins, radius = joint.pins_of(plate), joint.radius
+    pins, radius = joint.pins_of(plate), joint.radius_in(plate)
     report(0.0)
     if plate.is_infinite:
         places, kolosov = np.array([pin.at for pin in pins]) / radius, plate.material.kolosov(joint.plane)
@@ -320,24 +322,38 @@ def harmonics_needed(centres: np.ndarray) -> int:
     return int(min(max(least, 4.0), MOST_HARMONICS))
 
 
-def _joint_system(
+def _interfaces(joint: Joint, nodes: int) -> tuple[list[PinSection], list[RingBetween], list[Grid]]:
+    """The interfaces of all pins and then those round bushes, the bushes, and the nodes of each interface."""
+    thick, radius, through = joint.plates[0].thickness, joint.radius, [joint.pins_of(plate) for plate in joint.plates]
+    names, grids = [plate.name for plate in joint.plates], [Grid.circle(nodes, BOTTOM)] * len(joint.sections)
+    sections, around, rings = list[PinSection](), list[PinSection](), list[RingBetween]()
+    for inner, (pin, plate) in enumerate(joint.sections):
+        place, problem = names.index(whole_name(plate.name)), joint.problem(pin, plate)
+        at = (pin.at - through[place][0].at) / radius
+        own, *seats = (
+            PinSection(
+                joint.pins.index(pin), place, through[place].index(pin), at, each, plate.thickness / thick,
+                joint.plates[place].slices, each.hole_radius / radius,
+            )
+            for each in problem.interfaces
+        )  # fmt: skip
+        sections.append(own)
+        if seats:
+            rings.append(RingBetween(inner, len(grids), not problem.bush_slips))
+            grids, around = [*grids, seat_grid(problem, grids[inner])], [*around, *seats]
+    return sections + around, rings, grids
+
+
+def joint_system(
     joint: Joint, plates: list[HolesCompliance], values: np.ndarray, nodes: int
 ) -> tuple[PinsSystem, np.ndarray]:
     """The system of a joint, and the unit of each load, SI."""
     names, thick, radius = joint.load_names, joint.plates[0].thickness, joint.radius
+    radii = [joint.radius_in(plate) for plate in joint.plates]
     places = {plate.name: k for k, plate in enumerate(joint.plates)}
     pins = {pin.name: k for k, pin in enumerate(joint.pins)}
     beta = joint.problem(*joint.sections[0]).surfaces.beta_star
-    through, sections = [joint.pins_of(plate) for plate in joint.plates], []
-    for pin, plate in joint.sections:
-        place = places[whole_name(plate.name)]
-        at = (pin.at - through[place][0].at) / radius
-        sections.append(
-            PinSection(
-                pins[pin.name], place, through[place].index(pin), at, joint.problem(pin, plate),
-                plate.thickness / thick, joint.plates[place].slices,
-            )
-        )  # fmt: skip
+    sections, rings, grids = _interfaces(joint, nodes)
     clearances = np.array([each.problem.clearance for each in sections])
     stresses = np.array([joint.is_stress(name) for name in names])
     sizes = np.abs(values).max(axis=0) * np.where(stresses, radius, 1.0 / thick)
@@ -351,19 +367,22 @@ def _joint_system(
             columns.append((places[part], what, place))
             for row, motion in enumerate(moving):
                 if motion.plate == places[part] and what in plates[motion.plate].resultants:
-                    share = joint.plates[motion.plate].thickness / thick
-                    on_plates[row, place] = share * (motion.at(0j) @ plates[motion.plate].resultants[what])
+                    share, size = joint.plates[motion.plate].thickness / thick, radii[motion.plate] / radius
+                    resultants = plates[motion.plate].resultants[what] * [size, size, size * size]
+                    on_plates[row, place] = share * (motion.at(0j) @ resultants)
         elif part in pins:
             on_pins[pins[part], "xy".index(what), place] = 1.0
         else:
             on_plates[moving.index(Motion(places[part], 1.0 + 0j if what == "x" else 1j)), place] = 1.0
-    given = JointLoads(on_pins, moving, on_plates, columns, np.minimum(clearances, 0.0) / radius)
-    faying = []
+    fit = np.minimum(clearances, 0.0) / [each.problem.hole_radius for each in sections]
+    given = JointLoads(on_pins, moving, on_plates, columns, fit)
+    faying, outer = [], {ring.inner: ring.outer for ring in rings}
     for pin_name, clamp, *pair in joint.faying:
-        one, other = (joint.place(pin_name, plate) for plate in pair)
-        play = sum(max(clearances[end], 0.0) for end in (one, other)) / (force * beta)
+        ends = [joint.place(pin_name, plate) for plate in pair]
+        one, other = (outer.get(end, end) for end in ends)
+        play = sum(max(clearances[end], 0.0) for end in {*ends, one, other}) / (force * beta)
         limit, soft = clamp.limit / (force * thick), clamp.flexibility * thick / beta
         faying.append(FayingSurface((one, other), limit, soft, float(play)))
     coherence = [joint.coherence(pin).scaled(thick / beta) for pin in joint.pins]
-    system = build(sections, plates, given, [Grid.circle(nodes, BOTTOM)] * len(sections), force, coherence, faying)
+    system = build(sections, plates, given, grids, force, coherence, faying, rings)
     return system, np.where(stresses, force / radius, force * thick)

@@ -10,11 +10,12 @@ import numpy as np
 
 from fastpin.bodies.compliance import COLUMNS
 from fastpin.errors import InputError
+from fastpin.joints.conditions import CENTRING, PinSection
 from fastpin.joints.faying import NORMALS, rim_basis
-from fastpin.joints.hole import HoleInPlate
+from fastpin.joints.hole import HoleInPlate, in_hole
 from fastpin.joints.parts import Joint
 from fastpin.joints.result import FayingState, JointState
-from fastpin.joints.system import CENTRING, PinSection, PinsSystem
+from fastpin.joints.system import PinsSystem
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.lugs.several_holes import HolesCompliance
 from fastpin.model.loads import LOADS
@@ -33,11 +34,11 @@ class Since:
     Attributes
     ----------
     dissipated : ndarray, shape (sections,)
-        Energy that friction has dissipated in each contact, J/m.
+        Energy that friction has dissipated at each interface, J/m.
     rubbed : ndarray, shape (surfaces,)
         Energy that friction has dissipated at each faying surface, J.
     rest : ndarray, shape (sections, 2)
-        Where the pin first rested on each hole, dimensionless; NaN before.
+        Where the inner body first rested on the outer one of each interface, dimensionless; NaN before.
     """
 
     dissipated: np.ndarray
@@ -68,12 +69,13 @@ class StateMaker:
     Attributes
     ----------
     holes : list of HoleInPlate
-        The hole of each section, without loads.
+        The hole of each section of the joint, without loads.
     """
 
     def __init__(self, joint: Joint, system: PinsSystem, plates: list[HolesCompliance], since: Since) -> None:
         self._joint, self._system, self._plates, self._since = joint, system, plates, since
-        self.holes = [self._hole(each) for each in system.sections]
+        self._around = {ring.inner: ring.outer for ring in system.rings}
+        self.holes = [self._hole(system.sections[self._around.get(k, k)]) for k in range(len(joint.sections))]
 
     def state(self, now: Configuration, step: int, load: dict[str, float]) -> JointState:
         """The state of a configuration at a corner, under a `load` by name, SI.
@@ -90,14 +92,15 @@ class StateMaker:
         if not residuals[worst] <= MAX_RESIDUAL:
             words = f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
             raise ConvergenceError(words)
-        passed = system.passed(now.tractions)
-        contacts = [self._contact(now, step, place, passed[place], residuals) for place in range(len(passed))]
-        thickness = np.array([[each.problem.thickness] for each in system.sections], dtype=float)
+        passed, count = system.passed(now.tractions), len(self._joint.sections)
+        interfaces = [self._contact(now, step, place, passed[place], residuals) for place in range(len(passed))]
+        contacts = [self._whole(now, place, interfaces) for place in range(count)]
+        thickness = np.array([[each.problem.thickness] for each in system.sections[:count]], dtype=float)
         moved = np.zeros((len(self._plates), 3))
         units = np.array([scales.displacement, scales.displacement, scales.rotation])
         for motion, by in zip(system.given.moving, now.motion[3 * len(passed) :], strict=True):
             moved[motion.plate] += by * units * motion.at(0j)
-        forces = passed[:, :2] * scales.force * thickness
+        forces = passed[:count, :2] * scales.force * thickness
         return JointState(self._joint, step, load, tuple(contacts), forces, moved, residuals, self._faying(now))
 
     def _faying(self, now: Configuration) -> tuple[FayingState, ...]:
@@ -133,24 +136,32 @@ class StateMaker:
         self._since.dissipated[place] += float(grid.weights @ tally["friction_energy"]) * problem.hole_radius
         load = dict.fromkeys(LOADS, 0.0)
         load["Q"], load["P"] = float(passed[0]) * scales.force, -float(passed[1]) * scales.force
-        load["M"] = float(passed[2]) * scales.force * problem.hole_radius
+        load["M"] = float(passed[2]) * scales.force * self._joint.radius
         return State(
             step=step, fraction=1.0, load=load, theta=grid.theta, pressure=now.pressure[nodes] * scales.traction,
             shear=now.shear[nodes] * scales.traction, gap=now.gap[nodes] * scales.displacement,
             slip=now.slip[nodes] * scales.displacement - datum, status=status, dx=float(x) * scales.displacement,
             dy=float(y) * scales.displacement, rotation=float(turned) * scales.rotation,
             dissipation=float(self._since.dissipated[place]), work=math.nan, energy=math.nan, residuals=residuals,
-            problem=replace(problem, plate_body=self._body(now, place)), grid=grid, **tally,
+            problem=problem, grid=grid, **tally,
         )  # fmt: skip
 
-    def _body(self, now: Configuration, place: int) -> HoleInPlate:
+    def _whole(self, now: Configuration, place: int, interfaces: list[State]) -> State:
+        """The state of a pin in a plate, which has that of its bush."""
+        own, outer, seat = interfaces[place], self._around.get(place, place), None
+        if outer != place:
+            seat = replace(interfaces[outer], load=own.load)
+        whole = replace(own, problem=self._joint.problem(*self._joint.sections[place]), seat=seat)
+        return in_hole(whole, self._body(now, outer, self.holes[place]))
+
+    def _body(self, now: Configuration, place: int, hole_alone: HoleInPlate) -> HoleInPlate:
         """The hole of a contact, with what the other pins and the loads of the plate do to its edge."""
-        system, scales = self._system, self._system.scales
-        section, hole_alone = system.sections[place], self.holes[place]
+        system, scales, section = self._system, self._system.scales, self._system.sections[place]
         plate, size = self._plates[section.plate], len(hole_alone.matrix)
         loads, on_holes = np.zeros(len(COLUMNS)), np.zeros((plate.holes, size))
         of_slices = np.zeros(size)  # mean tractions of all slices here, less those of this one
-        for other, nodes, integrals in zip(system.sections, system.nodes.parts, system.integrals, strict=True):
+        for at, integrals in system.integrals.items():
+            other, nodes = system.sections[at], system.nodes.parts[at]
             own = float(other is section)  # the matrix of the hole knows its own tractions
             if felt := section.felt(other, plate.holes) - own:
                 onto = of_slices if other.hole == section.hole else on_holes[other.hole]
@@ -158,7 +169,8 @@ class StateMaker:
         for surface, sides in zip(system.faying, system.sides, strict=True):
             for other, sign in ((system.sections[at], sign) for at, sign in surface.signs):
                 if other.plate == section.plate:
-                    on_holes[other.hole] += rim_basis(size, sign, other.thickness)[1] @ now.shear[sides]
+                    width = other.thickness * other.radius
+                    on_holes[other.hole] += rim_basis(size, sign, width)[1] @ now.shear[sides]
         incoming = hole_alone.matrix @ of_slices
         for hole, coefficients in enumerate(on_holes):
             incoming += plate.block(section.hole, hole) @ coefficients
@@ -185,7 +197,7 @@ class StateMaker:
 
 
 def unbalanced(system: PinsSystem, now: Configuration) -> float:
-    """The largest force or moment that is left on a pin or a plate, relative to what the contacts and loads carry.
+    """The largest force or moment that is left on a pin, a ring or a plate, relative to what contacts and loads carry.
 
     It is recomputed from the tractions and the springs of loose pins, without the conditions of the solver.
     """
@@ -197,8 +209,13 @@ def unbalanced(system: PinsSystem, now: Configuration) -> float:
         total = pushed[members].sum(axis=0)
         total[:2] -= system.given.pins[pin] @ load
         left += [*total[:2], 0.0 if system.is_smooth(pin) else total[2]]
+    for ring in system.rings:
+        is_smooth = all(system.sections[place].problem.frictionless for place in (ring.inner, ring.outer))
+        total = pushed[ring.outer] - pushed[ring.inner]
+        left += [*total[:2], 0.0 if is_smooth else total[2]]
+    within = {ring.inner for ring in system.rings}
     for motion, force in zip(system.given.moving, system.given.plates @ load, strict=True):
-        of = zip(system.sections, pushed, strict=True)
+        of = [each for place, each in enumerate(zip(system.sections, pushed, strict=True)) if place not in within]
         left.append(float(sum(push @ motion.at(each.at) for each, push in of if each.plate == motion.plate) + force))
         for surface, friction in zip(system.faying, rubbed, strict=True):
             for each, sign in ((system.sections[at], sign) for at, sign in surface.signs):

@@ -1,137 +1,38 @@
 """The matrices of a joint of several pins and plates.
 
-An interface is a pin in the hole of one plate. Each is a :class:`fastpin.elasticity.system.System` of its own, of a pin
-in an infinite plate; a plate couples the interfaces of its holes through few harmonics, see
-:class:`fastpin.joints.ports.Ports`. The unknown motions are, for each interface, the motion (c_x, c_y, omega) of
-the pin over the plate, and the motions of each plate that is not held. The conditions are the equilibrium of every pin
-and plate, and the coherence of a pin in its plates:
-
-    first plate of a pin    sum over its plates of t (F + e c) = force on the pin, for x and y
-    each further section    what ties the sections of a pin, see :mod:`fastpin.joints.bending`, for x and y
-    rotations               one moment for all plates of a pin; equal rotations
-    plate that moves        the work of all t (F + e c), of moments, of friction of faying surfaces and of its loads on
-                            each of its motions = 0
-
-F is the force of the pin on the plate per thickness, t the thickness, and D = c + plate's displacement + g F - k J the
-displacement of the pin's section, (T29) of docs/theory.md. A weak spring of stiffness e holds every pin in the middle
-of its holes until it touches, and later where it was released: c of e c counts from there. It changes forces by 1e-6.
+An interface is a pin in the hole of one plate, a pin in a ring, or a ring in the hole. Each is a
+:class:`fastpin.elasticity.system.System` of its own, with a radius of its own, of a pin in an infinite plate or in a
+ring; a plate couples the interfaces of its holes through few harmonics, see :class:`fastpin.joints.ports.Ports`, and a
+ring those on its two rims. :mod:`fastpin.joints.conditions` has the motions and the conditions.
 """
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from fastpin.bodies.compliance import basis
 from fastpin.elasticity.drive import Drive
-from fastpin.elasticity.interfaces import TURN, Nodes
+from fastpin.elasticity.interfaces import Nodes, across_ring
 from fastpin.elasticity.operator import LARGEST_DENSE, DenseOperator
 from fastpin.elasticity.system import Interface, System
 from fastpin.joints.bending import Coherence
+from fastpin.joints.conditions import JointLoads, PinSection, RingBetween, conditions_of, is_smooth, sections_of_pins
 from fastpin.joints.faying import SIDES, SPREAD, FayingSurface, rim_basis, rows_of
 from fastpin.joints.ports import PortColumns, Ports
 from fastpin.lugs.several_holes import HolesCompliance
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, P, Q
-from fastpin.model.problem import Problem
 
-CENTRING = 1e-6
-"""Stiffness e of the springs that hold loose pins, times beta*. Forces change by as much. With 1e-7 a path was lost
-where a loose pin touches; with 1e-12 the first matrix is singular."""
+PinnedEdge = tuple[PinSection, np.ndarray, np.ndarray, np.ndarray]
+"""The edge of a hole: a section, the rows of its nodes, and its basis in the harmonics of the hole."""
 
 FAR = 1e-12
 """Least displacement of a hole by the other ones that counts, in parts of its own compliance."""
-
-
-@dataclass(frozen=True, eq=False)
-class PinSection:
-    """A pin in one plate.
-
-    Attributes
-    ----------
-    pin, plate : int
-        Places of both among the pins and plates.
-    hole : int
-        Place of the hole among those of its plate.
-    at : complex
-        Its centre, counted from the first hole of the plate, over R.
-    problem : Problem
-        The pin in an infinite plate of this material.
-    thickness : float
-        Thickness of the plate, or of the slice, in units of the first plate.
-    slices : int
-        Number of slices of the plate.
-    """
-
-    pin: int
-    plate: int
-    hole: int
-    at: complex
-    problem: Problem
-    thickness: float
-    slices: int = 1
-
-    def felt(self, other: PinSection, holes: int) -> float:
-        """How much of the smooth compliance of the plate this section feels of another one, or of itself.
-
-        In a plate with several of its holes pinned all slices share their mean tractions. With one hole each slice is a
-        plate by itself.
-        """
-        if holes == 1 or self.plate != other.plate:
-            return float(self is other)
-        return 1.0 / self.slices
-
-
-class Motion(NamedTuple):
-    """A motion of a plate: a displacement everywhere, a unit vector, or a rotation about its first hole.
-
-    Attributes
-    ----------
-    plate : int
-    way : complex
-        0 for a rotation.
-    """
-
-    plate: int
-    way: complex
-
-    def at(self, place: complex) -> tuple[float, float, float]:
-        """Displacement along x and y and rotation at a place of the plate, counted from its first hole."""
-        way = self.way or 1j * place
-        return way.real, way.imag, 0.0 if self.way else 1.0
-
-
-@dataclass(frozen=True, eq=False)
-class JointLoads:
-    """What the loads of a joint do, dimensionless and in their order.
-
-    Attributes
-    ----------
-    pins : ndarray, shape (pins, 2, loads)
-        Force on each pin along x and y per unit of each load.
-    moving : sequence of Motion
-        Motions of the plates that are not held.
-    plates : ndarray, shape (moving, loads)
-        Work of each load on these motions.
-    columns : sequence of (int, str, int)
-        Loads within plates: the plate, the name of its column, the place of the load.
-    fit : ndarray, shape (sections,)
-        How far the fit opens the gap of each section, over R.
-
-    Two more loads follow: the fit, from 0 to 1, and the springs of loose pins, which is always 1.
-    """
-
-    pins: np.ndarray
-    moving: Sequence[Motion]
-    plates: np.ndarray
-    columns: Sequence[tuple[int, str, int]]
-    fit: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,22 +45,25 @@ class PinsSystem(System):
     ----------
     nodes : Nodes
     sections : tuple of PinSection
-        The interfaces, pin by pin and through the thickness.
+        The interfaces of the pins, pin by pin and through the thickness, and then those round rings.
+    rings : tuple of RingBetween
     given : JointLoads
-    integrals : tuple of ndarray, shape (2 + 4 K, 2n)
-        Coefficients of the traction of each section in the basis of a compliance, per traction at its nodes.
+    integrals : dict of int to ndarray, shape (2 + 4 K, 2n)
+        Coefficients of the traction on a plate in the basis of a compliance, per traction at the nodes of an interface,
+        by the place of the interface.
     springs : ndarray, shape (m, m)
         The part of ``motion_rows`` that the springs of loose pins give.
     faying : tuple of FayingSurface
         Their sides stand behind the nodes of the contacts.
     ports : Ports or None
-        What passes between the interfaces; None with faying surfaces.
+        What passes between the interfaces; None with faying surfaces, slices or rings.
     """
 
     nodes: Nodes = field(kw_only=True)
     sections: tuple[PinSection, ...] = field(kw_only=True)
+    rings: tuple[RingBetween, ...] = field(kw_only=True)
     given: JointLoads = field(kw_only=True)
-    integrals: tuple[np.ndarray, ...] = field(kw_only=True)
+    integrals: Mapping[int, np.ndarray] = field(kw_only=True)
     springs: np.ndarray = field(kw_only=True)
     faying: tuple[FayingSurface, ...] = field(kw_only=True)
     ports: Ports | None = field(kw_only=True)
@@ -175,7 +79,16 @@ class PinsSystem(System):
     @cached_property
     def interfaces(self) -> tuple[Interface, ...]:
         parts = enumerate(zip(self.sections, self.nodes.grids, self.nodes.parts, strict=True))
-        return tuple(Interface(each.problem, grid, nodes, 3 * place, 1.0) for place, (each, grid, nodes) in parts)
+        return tuple(
+            Interface(each.problem, grid, nodes, 3 * place, each.radius) for place, (each, grid, nodes) in parts
+        )
+
+    @cached_property
+    def levers(self) -> np.ndarray:
+        found = self.weights.copy()
+        for each, nodes in zip(self.sections, self.nodes.parts, strict=True):
+            found[nodes] *= each.radius
+        return found
 
     @cached_property
     def sides(self) -> list[slice]:
@@ -187,27 +100,37 @@ class PinsSystem(System):
         return np.zeros(self.nodes.size, dtype=bool)
 
     @cached_property
+    def bonded(self) -> np.ndarray:
+        found = np.zeros(self.nodes.size, dtype=bool)
+        for ring in self.rings:
+            found[self.nodes.parts[ring.outer]] = ring.bonded
+        return found
+
+    @cached_property
     def pins(self) -> list[list[int]]:
         """The sections of each pin."""
-        return _sections_of_pins(self.sections)
+        return sections_of_pins(self.sections, self.rings)
 
     def is_smooth(self, pin: int) -> bool:
         """Whether nothing turns a pin."""
-        return _is_smooth(self.sections, self.pins[pin])
+        return is_smooth(self.sections, self.pins[pin])
 
     @cached_property
     def turning(self) -> tuple[slice, ...]:
         parts = self.nodes.parts
-        return tuple(
-            slice(parts[of[0]].start, parts[of[-1]].stop) for pin, of in enumerate(self.pins) if not self.is_smooth(pin)
-        )
+        bodies = [of for pin, of in enumerate(self.pins) if not self.is_smooth(pin)]
+        bodies += [[ring.outer] for ring in self.rings if not self.sections[ring.outer].problem.frictionless]
+        return tuple(slice(parts[of[0]].start, parts[of[-1]].stop) for of in bodies)
 
     @cached_property
     def of_pins(self) -> np.ndarray:
-        """Whether a condition is the equilibrium of a pin, bool, shape (m,). It stands with the pin's first section."""
+        """Whether a condition is the equilibrium of a pin or a ring, bool, shape (m,).
+
+        It stands with the first section of the pin, and with the outer interface of the ring.
+        """
         found = np.zeros(self.motions, dtype=bool)
-        for members in self.pins:
-            found[3 * members[0] : 3 * members[0] + 3] = True
+        for place in (*(members[0] for members in self.pins), *(ring.outer for ring in self.rings)):
+            found[3 * place : 3 * place + 3] = True
         return found
 
     def columns(self, *given: Any) -> PortColumns | None:
@@ -220,7 +143,7 @@ class PinsSystem(System):
         return replace(self, forces=forces, held_as=self.held_as or self)
 
     def passed(self, tractions: np.ndarray) -> np.ndarray:
-        """Force along x and y and moment of each section on its plate per thickness, shape (sections, 3)."""
+        """Force along x and y and moment of each interface on its outer body per thickness, shape (sections, 3)."""
         found: np.ndarray = (self.resultants @ tractions).reshape(-1, 3)
         return found
 
@@ -228,17 +151,6 @@ class PinsSystem(System):
         """Force of friction of each faying surface on its first plate, shape (surfaces, 2)."""
         shears = tractions[self.nodes.size + self.nodes.parts[-1].stop :]
         return shears.reshape(-1, SIDES) @ SPREAD.T
-
-
-def _sections_of_pins(sections: Sequence[PinSection]) -> list[list[int]]:
-    """The places of the sections of each pin."""
-    count = 1 + max(each.pin for each in sections)
-    return [[place for place, each in enumerate(sections) if each.pin == pin] for pin in range(count)]
-
-
-def _is_smooth(sections: Sequence[PinSection], members: Sequence[int]) -> bool:
-    """Whether a pin with these sections has no friction in any of its plates: then nothing turns it."""
-    return all(sections[place].problem.frictionless for place in members)
 
 
 def build(
@@ -249,13 +161,14 @@ def build(
     force: float,
     coherence: Sequence[Coherence],
     faying: Sequence[FayingSurface] = (),
+    rings: Sequence[RingBetween] = (),
 ) -> PinsSystem:
     """Fill the matrices of a joint with reference force `force`, N/m.
 
     Parameters
     ----------
     sections : sequence of PinSection
-        Pin by pin, and through the thickness.
+        Pin by pin, and through the thickness; then those round rings.
     plates : sequence of HolesCompliance
     given : JointLoads
     grids : sequence of Grid
@@ -264,6 +177,7 @@ def build(
     coherence : sequence of Coherence
         What ties the sections of each pin.
     faying : sequence of FayingSurface
+    rings : sequence of RingBetween
     """
     nodes = Nodes(tuple(grids), SIDES * len(faying))
     alone = [System.build(each.problem, grid, force) for each, grid in zip(sections, grids, strict=True)]
@@ -276,36 +190,64 @@ def build(
         own = nodes.rows(a)
         local = system.operator.entries()  # the forces of the pins are no loads here: their columns join the operator
         local += system.loads[:, [Q, P]] @ (system.equilibrium[:2] * [[1.0], [-1.0]])
-        matrix[np.ix_(own, own)] = stretch[a] * local
-        motion[own, 3 * a : 3 * a + 3] = system.motion
+        matrix[np.ix_(own, own)] = stretch[a] * one.radius * local
+        motion[own, 3 * a : 3 * a + 3] = system.motion * [1.0, 1.0, one.radius]
         loads[own[: own.size // 2], -2] = given.fit[a] * one.problem.hole_radius / scales.displacement
-    bases = [basis(plates[each.plate].block(0, 0), grid) for each, grid in zip(sections, grids, strict=True)]
-    rims = [(each, nodes.rows(a), *bases[a]) for a, each in enumerate(sections)]
-    beta = scales.displacement / force
-    equilibrium, rows, springs, forces = _conditions(sections, alone, nodes, given, coherence, beta)
+    beta, within = scales.displacement / force, {ring.inner for ring in rings}
+    _couple(rings, sections, nodes, beta, matrix)
+    in_plates = [a for a in range(len(sections)) if a not in within]
+    bases = {a: basis(plates[sections[a].plate].block(0, 0), grids[a]) for a in in_plates}
+    rims = [(sections[a], nodes.rows(a), *bases[a]) for a in in_plates]
+    equilibrium, rows, springs, forces = conditions_of(sections, alone, nodes, given, coherence, rings)
     rims += _faying_rims(faying, sections, plates, given, nodes, matrix, motion, loads)
-    has_ports = not faying and all(each.slices == 1 for each in sections)
+    has_ports = not faying and not rings and all(each.slices == 1 for each in sections)
     is_stored = not has_ports or size <= LARGEST_DENSE
     equilibrium[:, size + nodes.parts[-1].stop :] = motion[size + nodes.parts[-1].stop :].T  # work on moving plates
-    for one, own, out, _ in rims:
-        plate, unit = plates[one.plate], force / (one.problem.pair.plate.shear_modulus * scales.displacement)
-        for other, columns, _, into in rims:
-            if (felt := one.felt(other, plate.holes)) and (is_stored or other is one):
-                matrix[np.ix_(own, columns)] += unit * (out @ (felt * plate.block(one.hole, other.hole) @ into))
-        for _, name, place in (column for column in given.columns if column[0] == one.plate):
-            loads[own, len(LOADS) + place] += unit * (out @ plate.column(name, one.hole))
+    for rim in rims:
+        unit = rim[0].radius * force / (rim[0].problem.pair.plate.shear_modulus * scales.displacement)
+        _add_plate(plates[rim[0].plate], rim, rims if is_stored else [rim], given, unit, matrix, loads)
     ports = _ports(sections, plates, nodes, matrix, motion, equilibrium, bases, beta) if has_ports else None
     loose = [np.maximum(s * each.concentric_gap, 0.0) for s, each in zip(stretch, alone, strict=True)]
+    sized = [each.radius * system.weights for each, system in zip(sections, alone, strict=True)]
     return PinsSystem(
         problem=sections[0].problem, grid=nodes, scales=scales, rest_clearance=0.0,  # type: ignore[arg-type]
         operator=DenseOperator(matrix) if ports is None or is_stored else ports, ports=ports,
         motion=motion, loads=loads, equilibrium=equilibrium, motion_rows=rows,
         forces=forces, plate=0.0, drive=Drive(motion[:, :2], loads), nodes=nodes, sections=tuple(sections), given=given,
-        integrals=tuple(each[1] for each in bases), springs=springs, faying=tuple(faying),
+        rings=tuple(rings), integrals={a: each[1] for a, each in bases.items()}, springs=springs, faying=tuple(faying),
         friction=np.concatenate([*(each.friction for each in alone), np.repeat([s.limit for s in faying], SIDES)]),
         initial_gap=np.concatenate([*loose, np.zeros(nodes.further)]),
-        weights=np.concatenate([*(each.weights for each in alone), np.ones(nodes.further)]),
+        weights=np.concatenate([*sized, np.ones(nodes.further)]),
     )  # fmt: skip
+
+
+def _couple(
+    rings: Sequence[RingBetween], sections: Sequence[PinSection], nodes: Nodes, beta: float, matrix: np.ndarray
+) -> None:
+    """Fill in what each interface of a ring feels of the other one."""
+    for ring in rings:
+        pair, of = (ring.inner, ring.outer), (sections[ring.inner].problem, sections[ring.outer].problem)
+        for to, by in (pair, pair[::-1]):
+            block = across_ring(of, (nodes.grids[to], nodes.grids[by]), to == ring.inner, beta)
+            matrix[np.ix_(nodes.rows(to), nodes.rows(by))] = sections[ring.inner].radius * block
+
+
+def _add_plate(
+    plate: HolesCompliance,
+    rim: PinnedEdge,
+    rims: Sequence[PinnedEdge],
+    given: JointLoads,
+    unit: float,
+    matrix: np.ndarray,
+    loads: np.ndarray,
+) -> None:
+    """Add what a rim feels of its plate: of the tractions on some `rims`, and of the loads."""
+    one, own, out, _ = rim
+    for other, columns, _, into in rims:
+        if felt := one.felt(other, plate.holes):
+            matrix[np.ix_(own, columns)] += unit * (out @ (felt * plate.block(one.hole, other.hole) @ into))
+    for _, name, place in (column for column in given.columns if column[0] == one.plate):
+        loads[own, len(LOADS) + place] += unit * (out @ plate.column(name, one.hole))
 
 
 def _faying_rims(
@@ -317,11 +259,8 @@ def _faying_rims(
     matrix: np.ndarray,
     motion: np.ndarray,
     loads: np.ndarray,
-) -> list[tuple[PinSection, np.ndarray, np.ndarray, np.ndarray]]:
-    """Fill in what faying surfaces do without the compliance of the plates. Returns the rims on which they act.
-
-    A rim is a section, the rows of its nodes, and its basis in the harmonics of the hole.
-    """
+) -> list[PinnedEdge]:
+    """Fill in what faying surfaces do without the compliance of the plates. Returns the rims on which they act."""
     rims = []
     for surface, sides in zip(faying, rows_of(faying, nodes.parts[-1].stop), strict=True):
         normal = np.arange(sides.start, sides.stop)
@@ -330,7 +269,8 @@ def _faying_rims(
         matrix[np.ix_(shear, shear)] = surface.compliance()
         for place, sign in surface.signs:
             one = sections[place]
-            rims.append((one, shear, *rim_basis(len(plates[one.plate].block(0, 0)), sign, one.thickness)))
+            size = len(plates[one.plate].block(0, 0))
+            rims.append((one, shear, *rim_basis(size, sign, one.thickness * one.radius)))
             for number, moving in enumerate(given.moving, start=3 * len(sections)):
                 if moving.plate == one.plate:
                     motion[shear, number] += sign * (moving.at(one.at)[:2] @ SPREAD)
@@ -357,7 +297,7 @@ def _ports(
     matrix: np.ndarray,
     motion: np.ndarray,
     equilibrium: np.ndarray,
-    bases: Sequence[tuple[np.ndarray, np.ndarray]],
+    bases: Mapping[int, tuple[np.ndarray, np.ndarray]],
     beta: float,
 ) -> Ports:
     """The ports of the sections: five integrals of the tractions, three motions, and the far harmonics."""
@@ -369,7 +309,8 @@ def _ports(
     places = np.arange(count)[:, None]
     inputs = np.hstack([3 * places + np.arange(3), motions + modes * places + np.arange(modes)])
     couplings = np.zeros((motions + count * modes, count, sums + modes))
-    for a, (one, (waves, integrals)) in enumerate(zip(sections, bases, strict=True)):
+    for a, one in enumerate(sections):
+        waves, integrals = bases[a]
         factors, sizes, passed = np.linalg.svd(equilibrium[:, rows[a]], full_matrices=False)
         tables[a, :size, :size] = matrix[np.ix_(rows[a], rows[a])]
         tables[a, :size, size : size + 3] = motion[rows[a], 3 * a : 3 * a + 3]
@@ -384,91 +325,3 @@ def _ports(
                 couplings[felt, a, sums:] = -far[b].T @ block @ far[a]
     of_plates = [[place for place, each in enumerate(sections) if each.plate == plate] for plate in range(len(plates))]
     return Ports(rows, tables, motions, inputs, couplings.reshape(len(couplings), -1), of_plates)
-
-
-class _Conditions:
-    """The conditions of equilibrium and coherence while they are filled, row by row.
-
-    Attributes
-    ----------
-    equilibrium : ndarray, shape (m, 2n)
-    rows, springs : ndarray, shape (m, m)
-        The part of the motion, without that of the springs of loose pins; and that of the springs.
-    """
-
-    def __init__(
-        self, sections: Sequence[PinSection], alone: Sequence[System], nodes: Nodes, given: JointLoads, beta: float
-    ) -> None:
-        self._sections, self._alone, self._nodes, self._given, self._beta = sections, alone, nodes, given, beta
-        total = 3 * len(sections) + len(given.moving)
-        self.equilibrium = np.zeros((total, 2 * nodes.size))
-        self.rows, self.springs = np.zeros((total, total)), np.zeros((total, total))
-
-    def add_force(self, row: int, place: int, axis: int, factor: float) -> None:
-        """Add the force of a pin on a plate, with the spring that holds it while it is loose."""
-        self.equilibrium[row, self._nodes.rows(place)] += factor * self._alone[place].equilibrium[axis]
-        self.springs[row, 3 * place + axis] += factor * CENTRING
-
-    def add_moment(self, row: int, place: int, factor: float) -> None:
-        """Add the moment of a pin on a plate, with the spring."""
-        shear = self._nodes.rows(place)[self._nodes.grids[place].size :]
-        self.equilibrium[row, shear] -= factor * self._alone[place].weights
-        self.springs[row, 3 * place + TURN] += factor * CENTRING
-
-    def add_displacement(self, row: int, place: int, axis: int, sign: float) -> None:
-        """Add the displacement of a section, (T29), or its rotation."""
-        self.rows[row, 3 * place + axis] += sign
-        for number, motion in enumerate(self._given.moving, start=3 * len(self._sections)):
-            if motion.plate == self._sections[place].plate:
-                self.rows[row, number] += sign * motion.at(self._sections[place].at)[axis]
-        if axis != TURN:
-            modulus = self._sections[place].problem.pair.pin.shear_modulus
-            g = k = 1.0 / (8.0 * math.pi * modulus * self._beta)
-            cos, sin = self._nodes.grids[place].trig_moments()
-            along = self._alone[place].equilibrium[axis]
-            integral = (np.r_[cos, -sin], np.r_[sin, cos])[axis]
-            self.equilibrium[row, self._nodes.rows(place)] += sign * (g * along - k * integral)
-
-
-def _conditions(
-    sections: Sequence[PinSection],
-    alone: Sequence[System],
-    nodes: Nodes,
-    given: JointLoads,
-    coherence: Sequence[Coherence],
-    beta: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The conditions of equilibrium and coherence: of the tractions, the motion, the springs in it, and the loads."""
-    found, count = _Conditions(sections, alone, nodes, given, beta), 3 * len(sections)
-    user = slice(len(LOADS), len(LOADS) + given.pins.shape[2])
-    forces = np.zeros((len(found.rows), user.stop + 2))
-    for members, on_pin, ties in zip(_sections_of_pins(sections), given.pins, coherence, strict=True):
-        head = 3 * members[0]
-        forces[head : head + 2, user] = on_pin
-        for place in members:
-            for axis in (0, 1):
-                found.add_force(head + axis, place, axis, sections[place].thickness)
-        if _is_smooth(sections, members):
-            found.rows[head + TURN, head + TURN] = 1.0
-        else:
-            for place in members:
-                found.add_moment(head + TURN, place, sections[place].thickness)
-        for before, place in itertools.pairwise(members):
-            found.add_displacement(3 * place + TURN, before, TURN, 1.0)
-            found.add_displacement(3 * place + TURN, place, TURN, -1.0)
-        for place, by_moved, by_forces, outside in zip(members[1:], *ties, strict=True):
-            for axis in (0, 1):
-                row = 3 * place + axis
-                for other, moved, force in zip(members, by_moved, by_forces, strict=True):
-                    found.add_displacement(row, other, axis, moved)
-                    found.add_force(row, other, axis, force * sections[other].thickness)
-                forces[row, user] += outside * on_pin[axis]
-    for row, motion in enumerate(given.moving, start=count):
-        for place, each in enumerate(sections):
-            if each.plate == motion.plate:
-                x, y, turned = motion.at(each.at)
-                found.add_force(row, place, 0, each.thickness * x)
-                found.add_force(row, place, 1, each.thickness * y)
-                found.add_moment(row, place, each.thickness * turned)
-        forces[row, user] = -given.plates[row - count]
-    return found.equilibrium, found.rows + found.springs, found.springs, forces

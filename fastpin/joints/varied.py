@@ -246,12 +246,8 @@ class BaseJoint:
     @staticmethod
     def identity(case: JointFile, strengths: bool) -> dict[str, Any]:
         """Return the complete input of a run, without names of materials and units of texts."""
-        joint, loads = document_of(case.joint), load_values(case.joint, case.corners) + 0.0  # -0 becomes 0
+        joint, loads = _unnamed(document_of(case.joint)), load_values(case.joint, case.corners) + 0.0  # -0 becomes 0
         del joint["unit_system"]
-        for part in (*joint["pins"], *joint["plates"]):
-            part["material"].pop("name")
-            for constants in (part["material"].get(key, {}) for key in ("fatigue", "growth")):
-                constants.pop("source", None)
         digest = hashlib.sha256(np.ascontiguousarray(loads, dtype="<f8").tobytes()).hexdigest()
         history = {"corners": len(loads), "names": list(case.joint.load_names), "sha256": digest}
         solver = {"nodes": case.nodes, "harmonics": case.harmonics}
@@ -297,9 +293,19 @@ class BaseJoint:
         key, *inner = rest[1:]
         known = FIELDS[key].words if key in FIELDS else ""
         words = _WORDS.get(key) or known or key.replace("_", " ")
-        words = f"{words} {inner[0]}" if inner and key == "clamp" else words
+        words = f"{words} {' '.join(inner)}" if inner and key in ("clamp", "bush") else words
         of = f"all {section}s" if rest[0] == "*" else rest[0]
         return f"{words} of {of}" + (f" in {inner[0]}" if inner and key in ("clearance", "friction") else "")
+
+
+def _unnamed(value: Any) -> Any:
+    """Tables without names of materials and sources of constants."""
+    if isinstance(value, list):
+        return [_unnamed(each) for each in value]
+    if not isinstance(value, dict):
+        return value
+    left_out = {"name", "source"} if "nu" in value else {"source"}
+    return {name: _unnamed(each) for name, each in value.items() if name not in left_out}
 
 
 def _blocks(tables: Mapping[str, Any], name: str) -> list[dict[str, Any]]:

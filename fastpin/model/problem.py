@@ -199,7 +199,7 @@ class Problem:
         set_fields(self, clearance=clearance, friction=friction, dimensionless=bool(self.dimensionless))
         set_fields(self, gap=checked_gap(self.gap, radius, self.dimensionless))
         pin, *seats = self.interfaces  # each contact of the joint is checked as a problem of its own
-        if pin.is_gripped and any(not seat.is_gripped for seat in seats):
+        if pin.is_gripped and any(not seat.is_gripped for seat in seats) and not self.plate_body.lug.in_joint:
             words = "must be positive where the pin has an interference fit: only a pressed bush carries such a pin"
             raise InputError("interference", words)
 

@@ -121,7 +121,13 @@ class JointSource:
     @cached_property
     def rows(self) -> list[dict[str, Any]]:
         """What is largest at each pin in each plate; empty without a state."""
-        return [report.contact_row(self.result, place) for place in range(len(self.joint.sections) * bool(self.result))]
+        names = [(pin.name, plate.name) for pin, plate in self.joint.sections]
+        return [row for row in self.interfaces if (row["pin"], row["plate"]) in names]
+
+    @cached_property
+    def interfaces(self) -> list[dict[str, Any]]:
+        """The same, also at each bush in its plate."""
+        return report.contact_rows(self.result)
 
     @property
     def joint(self) -> Any:
@@ -246,7 +252,7 @@ def case(source: JointSource) -> PageSection:
         at = f"{factor * pin.at.real:.6g}, {factor * pin.at.imag:.6g} {label}"
         fits = ", ".join(
             f"{name}: clearance {unit['displacement'].text(pin.value_in('clearance', name), 5)}, "
-            f"friction {pin.value_in('friction', name):.4g}"
+            f"friction {pin.value_in('friction', name):.4g}{_bush_words(pin.bush_in(name), unit)}"
             for name in pin.plates
         )
         soft = "" if pin.flexibility in (0.0, BEAM) else f"; flexibility {unit['flexibility'].text(pin.flexibility, 4)}"
@@ -254,12 +260,22 @@ def case(source: JointSource) -> PageSection:
         clamp = pin.clamp
         tight = "" if clamp is None else f"; clamp {unit['force'].text(clamp.force, 5)}, friction {clamp.friction:.4g}"
         rows.append((pin.name, f"{pin.material.label or 'no name'}, at {at}", f"{fits}{soft}{tight}"))
-    pins = Facts(f"Pins, holes {length.text(2.0 * joint.radius)} wide", rows, ("pin", "material and place", "fit"))
+    wide = ", ".join(dict.fromkeys(length.text(2.0 * joint.radius_in(plate)) for plate in joint.plates))
+    pins = Facts(f"Pins, holes {wide} wide", rows, ("pin", "material and place", "fit"))
     orders = ", ".join(dict.fromkeys(map(str, source.result.harmonics)))
     options = [("plane", joint.plane), ("nodes of each contact", f"{source.result.nodes}"), ("harmonics", orders)]
     return PageSection(
         "case", "Joint", [plates, pins, _materials(source), Facts("Options", options, ("option", "value"))]
     )
+
+
+def _bush_words(bush: Any, unit: Any) -> str:
+    """Words for a bush; empty without one."""
+    if bush is None:
+        return ""
+    fit, size = unit["displacement"].text(bush.interference, 5), unit["length"].text(bush.outer_radius)
+    held = "bonded" if bush.bonded else f"friction {bush.friction:.4g} in the plate"
+    return f", bush of {bush.material.label or 'no name'} to radius {size}, interference {fit}, {held}"
 
 
 def _materials(source: JointSource) -> Facts:
@@ -268,6 +284,10 @@ def _materials(source: JointSource) -> Facts:
     found: dict[Any, list[str]] = {}
     for owner in (*source.joint.plates, *source.joint.pins):
         found.setdefault(owner.material, []).append(owner.name)
+    for pin in source.joint.pins:
+        for bush in filter(None, map(pin.bush_in, pin.plates)):
+            if (name := f"bush of {pin.name}") not in found.setdefault(bush.material, []):
+                found[bush.material].append(name)
     rows = []
     for material, owners in found.items():
         yields = material.known_yield_strength
@@ -330,7 +350,7 @@ def _share_columns(source: JointSource) -> list[Column]:
 def holes(source: JointSource) -> PageSection:
     """Return the map of all holes at the largest hoop stress, and tables of all pins in all plates."""
     result, step = source.result, source.worst["hoop_step"]
-    largest = report.largest_columns(source.joint, source.rows)
+    largest = report.largest_columns(source.joint, source.interfaces)
     parts: list[SectionPart] = [source.album.figure(joint_of(result, step - 1))]
     parts.append(Table("Largest of all load points at each pin in each plate", largest))
     unit, at = report.joint_units(source.joint), [(row["pin"], row["plate"]) for row in source.rows]
@@ -357,7 +377,7 @@ def holes(source: JointSource) -> PageSection:
 def displacement(source: JointSource) -> PageSection:
     """Return the loads over the displacements of the plates, and the dissipation."""
     parts = sections.drawn_or_reason(lambda: source.album.figure(displacement_of(source.result)))
-    lost = sum(row["dissipation"] for row in source.rows)
+    lost = sum(row["dissipation"] for row in source.interfaces)
     rubbed = sum(surface.dissipation for surface in source.result.states.bare[-1].faying)
     energy = report.joint_units(source.joint)["energy"]
     words = f"Friction has dissipated {energy.text(lost, 5)} in the holes in all"

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fastpin.bodies import harmonics
 from fastpin.bodies.compliance import basis
+from fastpin.elasticity.interfaces import moved_twice
 from fastpin.errors import InputError
 from fastpin.model.angles import near_bottom
 from fastpin.model.checks import number
@@ -55,17 +55,9 @@ def joint_displacement(
     return {"ux": float(moved.real), "uy": float(moved.imag)}
 
 
-def counted_twice(problem: Problem, resultants: Mapping[str, float]) -> dict[str, float]:
-    """Less the displacement of a bush's bore over its outer rim, m, under uniform tractions on both.
-
-    The ring of the pin's contact and the tube of the seat's both have it.
-    """
-    pin, seat = problem.interfaces
-    bush = seat.pair.pin
-    first = harmonics.first(seat.hole_radius / pin.hole_radius, bush.kolosov(seat.pair.plane), "uniform")
-    force = complex(resultants["Q"], -resultants["P"])
-    per_force = first.translation(seat.hole_radius / pin.hole_radius)[1] / (4.0 * math.pi * bush.shear_modulus)
-    moved = per_force * force
+def counted_twice(seat: Problem, resultants: Mapping[str, float]) -> dict[str, float]:
+    """Less the displacement of a bush's bore over its outer rim, m, which pin and `seat` both have."""
+    moved = moved_twice(seat) * complex(resultants["Q"], -resultants["P"])
     return {"ux": float(moved.real), "uy": float(moved.imag)}
 
 

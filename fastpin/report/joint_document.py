@@ -10,33 +10,34 @@ from fastpin.assess import crack, fatigue, margins, outputs
 from fastpin.assess.outputs import NUMBER, TEXT, WHOLE, Output, list_of, map_of, schema_of
 from fastpin.cracks import Growth
 from fastpin.joints import JointPin, JointPlate, JointState
+from fastpin.joints.result import JointInterface, interfaces_of
 from fastpin.model.points import owner_of
 from fastpin.model.units import units
-from fastpin.report.joints import Judged, bending_rows, contact_row, faying_row, joint_units, largest_pressure
+from fastpin.report.joints import Judged, bending_rows, contact_rows, faying_row, joint_units, largest_pressure
 from fastpin.states.margins import smallest_margin
 from fastpin.states.state import State
 
 
 class JointContact(NamedTuple):
-    """A pin in a plate at a load point: a place among the sections of a joint."""
+    """A pin in a plate at a load point, or its bush."""
 
     state: JointState
-    place: int
+    at: JointInterface
 
     @property
     def pin(self) -> JointPin:
         """The pin."""
-        return self.state.joint.sections[self.place][0]
+        return self.state.joint.sections[self.at.place][0]
 
     @property
     def plate(self) -> JointPlate:
         """The plate."""
-        return self.state.joint.sections[self.place][1]
+        return self.state.joint.sections[self.at.place][1]
 
     @property
     def contact(self) -> State:
         """The state of the contact."""
-        return self.state.contacts[self.place]
+        return self.at.of(self.state.contacts[self.at.place])
 
 
 def _loads(state: JointState) -> dict[str, float]:
@@ -60,13 +61,13 @@ KINDS = {
 """The kinds of quantity whose units JSON names, by their names there."""
 
 CONTACT = (
-    Output("pin", "text", lambda at: at.pin.name),
+    Output("pin", "text", lambda contact: contact.at.pin),
     Output("plate", "text", lambda at: at.plate.name),
     Output(
         "force", form=list_of(NUMBER, 2),
-        of=lambda at: joint_units(at.state.joint)["force"].factor * at.state.forces[at.place],
+        of=lambda contact: joint_units(contact.state.joint)["force"].factor * contact.state.forces[contact.at.place],
     ),
-    Output("moment", "moment", lambda at: at.state.moments[at.place]),
+    Output("moment", "moment", lambda contact: contact.contact.load["M"] * contact.plate.thickness),
     Output("share", of=lambda at: at.state.shares(at.plate.name)[at.pin.name], optional=True),
     Output("peak_pressure", "traction", lambda at: largest_pressure(at.contact)),
     Output(
@@ -136,7 +137,7 @@ JOINT_STATE = (
         "moved", form=map_of(list_of(NUMBER, 3), "displacement along x and y, and rotation"), of=_moved,
     ),
     Output(
-        "contacts", "list", lambda state: [JointContact(state, place) for place in range(len(state.contacts))],
+        "contacts", "list", lambda state: [JointContact(state, each) for each in interfaces_of(state.joint)],
         parts=CONTACT,
     ),
     Output("faying", "list", _rubbed, parts=RUBBED),
@@ -188,10 +189,7 @@ JOINT = (
     Output("seconds", of=lambda judged: judged.result.seconds),
     Output(
         "largest", "list",
-        lambda judged: [
-            contact_row(judged.result, place)
-            for place in range(len(judged.result.joint.sections) * bool(len(judged.result)))
-        ],
+        lambda judged: contact_rows(judged.result),
         parts=LARGEST,
     ),
     Output(

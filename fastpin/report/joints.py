@@ -24,6 +24,7 @@ from fastpin.joints import (
     SectionMargin,
 )
 from fastpin.joints.parts import BEAM, whole_name
+from fastpin.joints.result import JointInterface, interfaces_of
 from fastpin.model import angles, ties
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.doubts import doubts_given
@@ -123,8 +124,7 @@ def describe(judged: Judged) -> str:
     ]
     if not len(result):
         return "\n".join(head)
-    rows = [contact_row(result, place) for place in range(len(joint.sections))]
-    tables = [forces_columns(result), largest_columns(joint, rows)]
+    tables = [forces_columns(result), largest_columns(joint, contact_rows(result))]
     if joint.faying:
         tables.append(faying_columns(result))
     if bent := bending_rows(result):
@@ -329,17 +329,22 @@ def _left_out(count: int, words: str) -> list[str]:
     return [f"  ... {count - MOST_LISTED} with {words} ..."] if count > MOST_LISTED else []
 
 
-def contact_row(result: JointResult, place: int) -> dict[str, Any]:
-    """What is largest of all states at one pin in one plate, SI.
+def contact_rows(result: JointResult) -> list[dict[str, Any]]:
+    """The rows of all interfaces; none without a state."""
+    return [contact_row(result, each) for each in interfaces_of(result.joint) if len(result)]
+
+
+def contact_row(result: JointResult, at: JointInterface) -> dict[str, Any]:
+    """What is largest of all states at one pin in one plate, or at its bush in this plate, SI.
 
     The slip is the longest path of a node from one load point to the next. Load points count from 1. Of a hole that is
     never touched the hoop stress is that of the loads of the plate. The force is negative where that on a slice points
     against the force on the whole plate.
     """
-    pin, plate = result.joint.sections[place]
+    pin, plate = result.joint.sections[at.place]
     forces = _signed(*(_forces(result, pin.name, name) for name in (plate.name, whole_name(plate.name))))
     peaks, pressures, slips, touched, lost = [], [], [], None, 0.0
-    for contact in result.states.section(place):
+    for contact in map(at.of, result.states.section(at.place)):
         peaks.append(contact.peak_hoop_stress("plate"))
         pressures.append(largest_pressure(contact))
         slips.append(float(np.max(contact.slip_distance)))  # type: ignore[arg-type]
@@ -347,8 +352,8 @@ def contact_row(result: JointResult, place: int) -> dict[str, Any]:
         lost = contact.dissipation * plate.thickness
     hoop = ties.top([peak.value for peak in peaks])
     return {
-        "pin": pin.name,
-        "plate": plate.name,
+        "pin": at.pin,
+        "plate": at.plate,
         "touched": touched,
         "force": max(forces, key=abs),
         "pressure": max(pressures),

@@ -268,7 +268,7 @@ def assembled_tractions(problem: Problem, grid: Grid) -> tuple[Tractions, ...]:
     return _assembled(instance("problem", problem, Problem, "a Problem"), instance("grid", grid, Grid, "a Grid"))
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=64)
 def _assembled(problem: Problem, grid: Grid) -> tuple[Tractions, ...]:
     if not problem.is_pressed:
         return ()

@@ -543,7 +543,7 @@ class State(ReadOnly):
             for each, problem, pair in zip(self._interfaces, self.problem.interfaces, radii, strict=True)
         ]  # fmt: skip
         if self.seat is not None:
-            parts.append(reading.joint.counted_twice(self.problem, self.resultants))
+            parts.append(reading.joint.counted_twice(self.problem.interfaces[1], self.resultants))
         return {name: sum(part[name] for part in parts) for name in ("ux", "uy")}
 
 

@@ -7,7 +7,8 @@
 ``/solver``             attributes: nodes, harmonics, title, ``fatigue`` and ``crack``; ``statistics``
 ``/states``             arrays of the whole joint, one row for each corner
 ``/interfaces/K``       a pin in one plate, in the order of ``joint.sections``: ``states`` as in a result, without work
-                        and energy; ``matrix``: what the plate adds to the compliance of the hole
+                        and energy, ``states/seat`` of its bush; ``matrix``: what the plate adds to the compliance of
+                        the hole
 ``/restart/latest``     the place from which the joint goes on
 ======================  ============================================================================================
 
@@ -27,6 +28,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
 from fastpin.joints.document import document_of
 from fastpin.joints.faying import SIDES
@@ -63,6 +65,9 @@ SAME = 1e-9
 
 FIELDS = {**layout.NODE_FIELDS, **layout.SLIP_FIELDS}
 """Arrays with node values of an interface, with their kinds."""
+
+OF_SEAT = tuple(f"{layout.SEATED[1]}{name}" for name in (*FIELDS, *layout.SEAT_NUMBERS))
+"""Arrays of the seat of a bush."""
 
 
 def record_joint(
@@ -115,7 +120,7 @@ def pack_joint(case: JointFile, result: JointResult, error: str | None) -> bytes
     """
     task, attributes = _followed(case, None)
     file, rows = packed.PackedGroup(), defaultdict[str, list[layout.Rows]](list)
-    holes: list[Any] = [contact.problem.plate_body for contact in result[0].contacts]
+    holes: list[Any] = [contact.problem.plate_body.lug for contact in result[0].contacts]
     _write_head(file, task, attributes, holes)
     for state in result:
         for name, row in _rows_of(state).items():
@@ -274,7 +279,7 @@ class JointWriter(FileWriter):
             for place in range(len(task.joint.sections)):
                 group = stored["interfaces"][str(place)]["states"]
                 numbers = (*layout.number_fields(group), *layout.HOLE_FIELDS, "loads", "residuals")
-                _check_growing(group, (*FIELDS, *numbers), size)
+                _check_growing(group, (*FIELDS, *numbers, *(OF_SEAT if "seat" in group else ())), size)
 
             writer._restart = writer.latest(stored, lambda group: _read_restart(group, task, size))
             groups = ("states", *(f"interfaces/{place}/states" for place in range(len(task.joint.sections))))
@@ -386,10 +391,11 @@ def _rows_of(state: JointState) -> dict[str, layout.Rows]:
         ):
             whole[name] = np.array([values])
     found = {"states": whole}
-    holes: list[Any] = [contact.problem.plate_body for contact in state.contacts]
+    holes: list[Any] = [contact.problem.plate_body.lug for contact in state.contacts]
     for place, (contact, hole) in enumerate(zip(state.contacts, holes, strict=True)):
         rows = layout.rows_of([contact])
-        rows = {name: rows[name] for name in (*FIELDS, *layout.NUMBER_FIELDS, "loads", "residuals") if name in rows}
+        names = *FIELDS, *layout.NUMBER_FIELDS, "loads", "residuals", *OF_SEAT
+        rows = {name: rows[name] for name in names if name in rows}
         for name in layout.OF_WHOLE:
             del rows[name]
         edge, (pin, plate) = np.zeros_like(hole.incoming), state.joint.sections[place]
@@ -421,8 +427,11 @@ def _read_restart(group: hdf5.Group, task: JointTask, size: int) -> JointRestart
         If an array does not fit the joint, or a number is out of range or not finite.
     """
     joint, stored = task.joint, group["configuration"]
-    sections, surfaces = len(joint.sections), len(joint.faying)
-    nodes = sections * task.nodes + SIDES * surfaces
+    grid, surfaces = all_round(task.nodes), len(joint.faying)
+    problems = [joint.problem(*section) for section in joint.sections]
+    seats = [seat_grid(problem, grid).size for problem in problems if problem.seat is not None]
+    sections = len(problems) + len(seats)
+    nodes = len(problems) * task.nodes + sum(seats) + SIDES * surfaces
     motions = 3 * sections + sum(len(MOVES[plate.moves]) for plate in joint.plates)
     sizes = {"motion": motions, "rest": motions, "origin": 2, "load": len(LOADS) + len(joint.load_names) + 2}
     arrays = {name: read_array(stored, name, sizes.get(name, nodes)) for name in ARRAYS}

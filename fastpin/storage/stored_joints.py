@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from fastpin.joints.document import joint_from
-from fastpin.joints.hole import HoleInPlate
+from fastpin.joints.hole import HoleInPlate, in_hole
 from fastpin.joints.parts import Joint, whole_name
 from fastpin.joints.result import FayingState, JointState, JointStates
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, JointTask
@@ -71,11 +71,12 @@ def read_task(file: hdf5.Group) -> JointTask:
 
 def read_hole(file: hdf5.Group, joint: Joint, place: int) -> HoleInPlate:
     """Read the hole of a section, without loads."""
-    pair, group = joint.problem(*joint.sections[place]).pair, file["interfaces"][str(place)]
+    pin, plate = joint.sections[place]
+    pair, group = joint.problem(pin, plate).pair, file["interfaces"][str(place)]
     matrix = dataset_of(group, "matrix", float)
     if len(matrix) > 2 + 4 * MOST_HARMONICS:
         raise ValueError(f"interfaces/{place}/matrix has the shape {matrix.shape}")
-    return HoleInPlate(pair.plate.nu, pair.plane, joint.radius, matrix[()])
+    return HoleInPlate(pair.plate.nu, pair.plane, pin.hole_radius(plate.name), matrix[()])
 
 
 def read_whole(file: hdf5.Group, task: JointTask, picked: slice | Sequence[int]) -> layout.Rows:
@@ -125,7 +126,9 @@ class StoredSection(KeptStates):
         with self._opened() as (file, states):
             self._hole = read_hole(file, task.joint, place)
             self.points, self.grid = states.points, states.grid
-            self.problem = replace(states.problem, plate_body=self._hole)
+            bush = states.problem.plate_body.bush
+            body = self._hole if bush is None else replace(bush, inside=self._hole)
+            self.problem = replace(states.problem, plate_body=body)
 
     @contextmanager
     def _opened(self) -> Iterator[tuple[hdf5.Group, StoredStates]]:
@@ -165,8 +168,9 @@ class StoredSection(KeptStates):
             hole = self._hole.under(
                 incoming=acting["incoming"][k], others=others, loads=acting["acting"][k], rubbed=acting["rubbed"][k]
             )
-            problem = replace(state.problem, plate_body=hole)
-            found.append(replace(state, problem=problem, residuals=_residuals(whole, k)))
+            residuals = _residuals(whole, k)
+            seat = None if state.seat is None else replace(state.seat, residuals=residuals)
+            found.append(in_hole(replace(state, residuals=residuals, seat=seat), hole))
         return found
 
 

@@ -65,7 +65,8 @@ def _along(state: JointState, pin: str, plate: str) -> tuple[np.ndarray, np.ndar
 def bypass(state: JointState, pin: str, plate: str) -> float:
     """The force in the plate that passes the hole: that of the pins more than a radius ahead of it, N."""
     _, apart, forces = _along(state, pin, plate)
-    return float(forces[apart > state.joint.radius].sum()) if np.isfinite(apart).all() else math.nan
+    _, of = state.joint.sections[state.joint.places(pin, plate)[0]]
+    return float(forces[apart > state.joint.radius_in(of)].sum()) if np.isfinite(apart).all() else math.nan
 
 
 def kt(state: JointState, pin: str, plate: str, net: bool) -> float:
@@ -81,12 +82,10 @@ def kt(state: JointState, pin: str, plate: str, net: bool) -> float:
         return math.nan
     edge = np.array([z for part in of.outline for z in part.at(np.linspace(0.0, 1.0, 33))])
     width = float(np.ptp(edge.imag * along[0] - edge.real * along[1]))
-    width -= 2.0 * joint.radius * int((np.abs(apart) <= joint.radius).sum()) if net else 0.0
-    return _hoop(state, pin, plate) * width * of.thickness / float(forces.sum())
-
-
-def _hoop(state: JointState, pin: str, plate: str) -> float:
-    return float(state[pin, plate].peak_hoop_stress("plate").value)
+    radius = joint.radius_in(of)
+    width -= 2.0 * radius * int((np.abs(apart) <= radius).sum()) if net else 0.0
+    contact = state[pin, plate]
+    return float((contact.seat or contact).peak_hoop_stress("plate").value) * width * of.thickness / float(forces.sum())
 
 
 QUANTITIES: dict[str, _Quantity] = {
@@ -96,7 +95,7 @@ QUANTITIES: dict[str, _Quantity] = {
     "pressure": _Quantity(
         "traction", lambda state, *at: float(state[at].peak_pressure) if state[at].in_contact else 0.0
     ),
-    "hoop": _Quantity("traction", _hoop),
+    "hoop": _Quantity("traction", lambda state, *at: float(state[at].peak_hoop_stress("plate").value)),
     "kt_gross": _Quantity("ratio", partial(kt, net=False), AT_LARGEST_LOAD),
     "kt_net": _Quantity("ratio", partial(kt, net=True), AT_LARGEST_LOAD),
     "slip": _Quantity("displacement", lambda state, *at: float(np.max(state[at].slip_distance))),

@@ -9,6 +9,7 @@ import pytest
 
 from fastpin import Material, MaterialPair
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, solve_joint, system
+from fastpin.joints.conditions import CENTRING
 from fastpin.joints.ports import Ports
 from fastpin.lugs.outline import rectangle
 from fastpin.solver import held, path
@@ -66,7 +67,7 @@ def test_many_nodes_have_the_states_of_few(
     few, many = (solved(monkeypatch, joint, count) for count in (1_000, 0))
     assert many.snaps == few.snaps
     for corner, (one, other) in enumerate(zip(few, many, strict=True)):
-        near = 1e-13 / system.CENTRING if few.snaps and corner > 0 else 1e-9  # beyond a snap springs have placed a pin
+        near = 1e-13 / CENTRING if few.snaps and corner > 0 else 1e-9  # beyond a snap springs have placed a pin
         np.testing.assert_allclose(other.forces, one.forces, atol=near * FORCE)
         for contact, same in zip(one.contacts, other.contacts, strict=True):
             size = contact.pressure.max()

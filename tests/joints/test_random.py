@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from fastpin import Material, MaterialPair, SolveError
+from fastpin.bodies import Bushing
 from fastpin.joints import Clamp, Joint, JointPin, JointPlate, JointState, solve_joint
+from fastpin.kernels.status import STICK
 from fastpin.lugs.outline import rectangle
 from tests.support.tiers import seeds
 
@@ -44,6 +46,23 @@ def random_joint(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]
         ]
         joint = replace(joint, pins=tuple(pins))
     return joint, corners
+
+
+def random_bushes(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]]]:
+    """The same with a bush round each pin in some plates: press fits, clearances and all frictions, also bonded."""
+    joint, corners = random_joint(rng)
+    unit = MaterialPair(MATERIALS[1], SHEET.material, "stress").beta_star * FORCE
+    bushed = [plate.name for plate in joint.plates if rng.random() < 0.7]
+    pins = []
+    for pin in joint.pins:
+        bushes = {}
+        for plate in (name for name in pin.plates if name in bushed):
+            material, fit = MATERIALS[rng.integers(3)], float(rng.choice([-0.1, 0.0, 0.1, 0.3, 2.0])) * unit
+            is_bonded = bool(fit > unit and rng.random() < 0.5)
+            friction = None if is_bonded else float(rng.choice([0.0, 0.15, 0.5]))
+            bushes[plate] = Bushing(material, 1.2, fit, friction=friction, bonded=is_bonded)
+        pins.append(replace(pin, bush=bushes))
+    return replace(joint, pins=tuple(pins)), corners
 
 
 LAYOUTS = (
@@ -80,13 +99,18 @@ def random_straps(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float
 def check_state(state: JointState) -> None:
     """Check Coulomb's law, the unilateral contact and the balance of pins and plates, from the arrays alone."""
     joint = state.joint
-    for (pin, plate), contact in zip(joint.sections, state.contacts, strict=True):
-        friction = pin.value_in("friction", plate.name)
-        assert contact.pressure.min() >= 0.0
-        assert contact.gap.min() >= 0.0
-        assert np.all(contact.pressure * contact.gap == 0.0)
-        excess = np.abs(contact.shear) - friction * contact.pressure
-        assert excess.max() <= 1e-9 * max(contact.pressure.max(), 1.0)
+    for whole in state.contacts:
+        for contact in filter(None, (whole, whole.seat)):
+            friction = float(contact.problem.friction)  # type: ignore[arg-type]
+            assert contact.pressure.min() >= 0.0
+            assert contact.gap.min() >= 0.0
+            assert np.all(contact.pressure * contact.gap == 0.0)
+            excess = np.abs(contact.shear) - friction * contact.pressure
+            assert excess.max() <= 1e-9 * max(contact.pressure.max(), 1.0)
+        if whole.seat is not None:  # the balance of the bush
+            passed, own = whole.seat.resultants, whole.resultants
+            np.testing.assert_allclose([passed[name] for name in own], [*own.values()], atol=1e-4 * FORCE)
+            assert whole.problem.bush_slips or (whole.seat.status == STICK).all()
     for pin in joint.pins:
         places = [place for place, (of, _) in enumerate(joint.sections) if of is pin]
         given = [state.load[f"{pin.name}.x"], state.load[f"{pin.name}.y"]]
@@ -105,7 +129,7 @@ def check_state(state: JointState) -> None:
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize(("draw", "count"), [(random_joint, 6), (random_straps, 2)])
+@pytest.mark.parametrize(("draw", "count"), [(random_joint, 6), (random_straps, 2), (random_bushes, 3)])
 def test_random_joints_meet_all_conditions_or_are_refused(draw: Callable[..., Any], count: int) -> None:
     refused, tried = 0, 0
     for seed in seeds(count):

@@ -371,7 +371,7 @@ def test_wrong_input_is_refused_in_one_sentence(make: Any, words: str) -> None:
 def test_pins_of_two_sizes_are_refused() -> None:
     pins = (*in_sheet(0.0).pins, JointPin("large", 9.0, STEEL, 1.5, ("sheet",)))
     error = refused(Joint, (SHEET,), pins)
-    assert "all pins of a joint must have one radius: large has 1.5 m, p0 has 1 m" in str(error)
+    assert "all holes of sheet must have one radius: that of large has 1.5 m, that of p0 has 1 m" in str(error)
 
 
 def test_a_lost_load_is_told_with_its_place_and_keeps_what_was_solved(monkeypatch: pytest.MonkeyPatch) -> None:
