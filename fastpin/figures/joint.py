@@ -161,7 +161,7 @@ def displacement_of(result: JointResult) -> Plot:
         if f"{plate.name}.{axis}" in joint.load_names
     ]
     if not moving:
-        raise InputError("result", "no plate moves under a load of its own: there is no displacement to draw")
+        raise InputError("result", "has no plate that moves under a load of its own: there is no displacement to draw")
     unit = joint_units(joint)
     columns: dict[str, Any] = {"load point": _points(result)}
     for name, moved in moving:
@@ -234,6 +234,7 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
             down = 0.55 * radius if is_wide else -1.1 * RING * radius
             at, style = size.factor * (pin.at - 1j * down), "center" if is_wide else "bottom"
             panel.text(at.real, at.imag, pin.name, ha="center", va=style, fontsize=7.5, parse_math=False)
+        panel.set_rasterization_zorder(0.0)  # the rings of a panel are one image
         panel.set_aspect("equal")
         panel.set_xlim(size.factor * left, size.factor * right)
         panel.set_ylim(size.factor * bottom, size.factor * top)
@@ -271,7 +272,7 @@ def _draw_hole(
     radius, centre = factor * pin.hole_radius(of.name), factor * pin.at
     ring = centre + radius * np.multiply.outer([1.0, RING], np.exp(1j * theta))
     panel.pcolormesh(
-        ring.real, ring.imag, np.vstack([hoop, hoop]), cmap="RdBu_r", norm=norm, shading="gouraud", rasterized=True
+        ring.real, ring.imag, np.vstack([hoop, hoop]), cmap="RdBu_r", norm=norm, shading="gouraud", zorder=-1.0
     )
     for each in filter(None, (contact.seat, contact)):  # a bush and its bore, or the hole
         own = factor * each.problem.hole_radius
@@ -308,7 +309,7 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
     factor, unit = joint_units(joint)["force"].scale([largest])
     few = len(points) <= 60
     for k, values in enumerate(curves.values()):
-        style = line(k % MAX_NAMED, k // MAX_NAMED)
+        style = line(k % MAX_NAMED, (k + k // MAX_NAMED) % MAX_NAMED)
         panel.plot(points, factor * np.array(values), marker="o" if few else "", markersize=3.5, **style)
     draw_grid(panel)
     panel.set_xlabel("load point")
@@ -317,7 +318,10 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
         panel.set_ylim(bottom=0.0)
     if few and len(points) < 12:
         panel.set_xticks(points)
-    handles = [Line2D([], [], label=name, **line(k % MAX_NAMED, k // MAX_NAMED)) for k, name in enumerate(curves)]
+    handles = [
+        Line2D([], [], label=name, **line(k % MAX_NAMED, (k + k // MAX_NAMED) % MAX_NAMED))
+        for k, name in enumerate(curves)
+    ]
     sheet.legend(handles, min(len(handles), 5))
     sheet.head(look.title)
     return sheet

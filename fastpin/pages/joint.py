@@ -364,7 +364,8 @@ def holes(source: JointSource) -> PageSection:
         if name == "bypass":
             factor, label = unit["force"].scale([each for each in found if math.isfinite(each)])
         cells = [f"{factor * each:.4g}" if math.isfinite(each) else "-" for each in found]
-        marks = [report.UNRESOLVED * (name.startswith("kt") and not row["resolved"]) for row in source.rows]
+        unsure = [name.startswith("kt") and not row["resolved"] for row in source.rows]
+        marks = [report.UNRESOLVED * (each and cell != "-") for each, cell in zip(unsure, cells, strict=True)]
         columns.append((name.replace("kt_", "Kt "), label, [f"{a}{b}" for a, b in zip(cells, marks, strict=True)]))
     parts.append(Table("At the largest force of the pins on each plate", columns))
     words = (

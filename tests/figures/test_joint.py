@@ -61,7 +61,7 @@ def test_a_load_is_drawn_over_the_displacement_of_its_plate() -> None:
 
 
 def test_what_a_joint_lacks_is_said() -> None:
-    with pytest.raises(InputError, match="no plate moves under a load of its own"):
+    with pytest.raises(InputError, match="has no plate that moves under a load of its own"):
         figures.plot_displacement(sheets())
     with pytest.raises(InputError, match="at: must be a whole number from 1 to 4, not 5"):
         figures.joint.holes_plot(figures.joint.JointSubject(sheets()), at=5)

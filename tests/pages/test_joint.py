@@ -43,7 +43,7 @@ def test_a_page_has_shares_holes_lives_and_the_worst_contact(stored: Path) -> No
         "A in sheet: stick and slip",
         "Share of each pin in the force on a plate.",
         "A sheet, B sheet",  # the first touches
-        "no plate moves under a load of its own",
+        "result has no plate that moves under a load of its own",
         "equilibrium of every pin and plate",
         "repeat = 2",  # the joint file beside the result
     ):
