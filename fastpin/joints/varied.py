@@ -324,7 +324,7 @@ def _nested(block: Mapping[str, Any], key: str, inner: list[str], value: Any) ->
         plates = block.get("plates")
         through = plates if isinstance(plates, list) else [plates]
         known = dict.fromkeys(through, known or 0.0) if key in ("clearance", "friction") else {}
-    return known | {inner[0]: value}
+    return known | {inner[0]: _nested(known, inner[0], inner[1:], value)}
 
 
 def _listed(section: str) -> str:

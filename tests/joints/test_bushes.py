@@ -16,6 +16,7 @@ from fastpin.bodies import Bushing, Ring
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, parse_joint, solve_joint
 from fastpin.joints.document import document_of, joint_from
 from fastpin.joints.solving import joint_system, load_values, plate_compliance
+from fastpin.joints.varied import BaseJoint
 from fastpin.kernels.status import STICK
 from fastpin.model import LOADS
 from fastpin.model.angles import BOTTOM
@@ -152,6 +153,15 @@ def test_a_bush_from_a_file() -> None:
     assert parse_joint(text).joint.pins[0].bush_in("sheet").outer_radius == pytest.approx(3.5e-3)  # type: ignore[union-attr]
 
 
+@pytest.mark.parametrize(("written", "field"), [("bush = {", "bush"), ("bush.sheet = {", "bush.sheet")])
+def test_a_sweep_varies_a_bush(written: str, field: str) -> None:
+    base = BaseJoint(BUSHED.replace("bush = {", written), "joint.toml", Path())
+    _, case = base.vary({f"pin.A.{field}.interference": 5e-6, f"pin.*.{field}.friction": 0.3})
+    assert case is not None
+    bushes = [pin.bush_in("sheet") for pin in case.joint.pins]
+    assert [(bush.interference, bush.friction) for bush in bushes if bush] == [(5e-6, 0.3), (8e-6, 0.3)]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -194,6 +204,7 @@ def test_a_wrong_bush_is_refused_in_python() -> None:
 # -- outputs -----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.gate
 def test_bushes_have_rows_of_their_own() -> None:
     case = parse_joint(BUSHED)
     result = solve_joint(case.joint, case.corners, nodes=case.nodes)
