@@ -83,7 +83,8 @@ def count(name, call):
     found.update({f"{kind} of a warm {name}": number for kind, number in numbers.items() if number and kind != "now"})
 
 def counted_init(self, *arguments, **keywords):
-    opened.append(1)
+    if isinstance(arguments[0], (str, os.PathLike)):  # h5py also makes such objects of a file that is open
+        opened.append(1)
     init(self, *arguments, **keywords)
 
 h5py.File.__init__ = counted_init

@@ -418,11 +418,6 @@ TableLine = int | Repeat | LeftOut
 """A line of a table: the number of a row from 0, or a line for several rows."""
 
 
-def visible_rows(count: int) -> list[int]:
-    """Return the indices of the rows to print of `count`: all, or of a long table the first and the last ones."""
-    return printed_rows(cut_lines(count))
-
-
 def printed_rows(lines: Iterable[TableLine]) -> list[int]:
     """Return the rows that have a line of their own."""
     return [line for line in lines if isinstance(line, int)]

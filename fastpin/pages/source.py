@@ -71,6 +71,8 @@ class Source:
         Whether the options of the case are those of the run. Otherwise only the nodes and the method are.
     life : WearResult or None
         The life of wear. The result then has its states, over one cycle on each stored profile.
+    answers : dict of str
+        What has been found for the questions of the case, by name: a sentence says why nothing was found.
     """
 
     case: Case
@@ -80,6 +82,7 @@ class Source:
     case_text: str = field(default="", repr=False)
     knows_options: bool = True
     life: WearResult | None = None
+    answers: dict[str, Any] = field(default_factory=dict, init=False)
 
     @classmethod
     def of_file(cls, stored: StoredResult) -> Source:
@@ -249,11 +252,6 @@ class Source:
             return [fatigue(self.cycle.states, SWT, one) for one in bodies]
         except InputError as error:
             return f"There is no fatigue: {error.field} {error.reason}."
-
-    @cached_property
-    def answers(self) -> dict[str, Any]:
-        """What is found for the questions of the case, by name: a sentence says why nothing is found."""
-        return {}
 
     def answer(self, name: str) -> Any:
         """Return what is found for a question; a sentence says why it is not known. None without its section."""

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fastpin import assess
-from fastpin.assess.outputs import ROUNDING, Column, table, visible_rows
+from fastpin.assess.outputs import ROUNDING, Column, cut_lines, printed_rows, table
 from fastpin.model import Case, LoadHistory, Material, Problem, Wear, checks, points
 from fastpin.model.case import questions_of
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
@@ -164,7 +164,7 @@ def corner_columns(
     last = np.zeros(len(LOADS)) if initial is None else initial
     begin = 1
     for block in history.blocks:
-        visible = visible_rows(len(block.given))
+        visible = printed_rows(cut_lines(len(block.given)))
         values = LoadHistory.from_array(block.given).values(initial=last)
         numbers += [f"{begin + k}" for k in visible]
         counts += [f"x {block.count:,}" if block.count > 1 else "" for _ in visible]

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fastpin.errors import InputWarning
+from fastpin.model.checks import whole_number
 from fastpin.model.doubts import pressure_doubts
 from fastpin.solver.result import Result
 from fastpin.states import extremes, walking
@@ -88,6 +89,7 @@ class Held:
 
     def between(self, first: int, last: int) -> list[State]:
         """Return the states from one corner to another."""
+        first, last = whole_number("first", first, 0), whole_number("last", last, 0)
         return self.read(np.flatnonzero((self.points >= first) & (self.points <= last)).tolist())
 
     def part(self, first: int, last: int) -> Result:

@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from fastpin.model.case import Case
-from fastpin.model.checks import file_path
+from fastpin.model.checks import file_path, items, whole_number
 from fastpin.solver.result import Result
 from fastpin.states import extremes
 from fastpin.states.extremes import AT_ONCE, Found, KeptStates
@@ -161,7 +161,9 @@ class StoredResult(Held):
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Return the states at these places, in increasing order."""
-        return self._read(list(places)).states if self.few is None else [self.few[place] for place in places]
+        given = items("places", places, "places of states")
+        places = [whole_number("places", place, 0, self.points.size - 1) for place in given]
+        return self._read(places).states if self.few is None else [self.few[place] for place in places]
 
     def whole(self) -> Result:
         """Return the result with all its states."""

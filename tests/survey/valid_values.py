@@ -218,6 +218,7 @@ class Valid:
         self._bushed = bushed
         self._with_constants = fastpin.solve(steel, cycle_in_newtons, nodes=NODES)  # of the plate, for fatigue
         self.objects |= {
+            "StoredResult": lambda: fastpin.storage.StoredResult("result.h5"),
             "StressReserve": _always(self._with_constants.assessed_reserves()[0]),
             "BushFit": _always(bushed.bush_fit()),
             "GrowthLaw": _always(law),  # the class alone has no rate
@@ -390,6 +391,7 @@ class Valid:
             "archard_depth.pressure": [[1.0], [2.0]],
             "archard_depth.slip": [[1e-6], [2e-6]],
             "ruiz.shear": [[1.0], [2.0]],
+            "read.places": [0],
             "resume.path": "unfinished.h5",
             "bulk_stress_eccentricity.bulk_stress": 0.01,
             "bulk_stress_eccentricity.load_ratio": 0.1,
