@@ -32,10 +32,10 @@ MOST = {
 
 CALLS = {
     "files of wings that a solve imports": 0,
-    "files of a warm solve": 50,
-    "depth of a warm solve": 24,
-    "files of a warm fastpin run": 88,
-    "depth of a warm fastpin run": 28,
+    "files of a warm solve": 49,
+    "depth of a warm solve": 22,
+    "files of a warm fastpin run": 87,
+    "depth of a warm fastpin run": 26,
 }
 """The most for the calls."""
 
