@@ -17,14 +17,21 @@ import numpy as np
 from fastpin.joints.conditions import CENTRING
 from fastpin.joints.system import PinsSystem
 from fastpin.kernels import exchange
+from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.solver.configuration import Configuration, accept_solution, resting_status, solve_statuses
+from fastpin.solver.configuration import (
+    Configuration,
+    accept_solution,
+    resting_status,
+    solve_statuses,
+)
 from fastpin.solver.errors import OPENED, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.solver.increment import accepted, implicit_step
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.snap import creep, finite_step
 from fastpin.solver.tableau import TableauMemory
+from fastpin.solver.unknowns import DenseUnknowns
 
 JUMPS = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
 """Parts of a step at which a state beyond a snap is looked for; the first one only if pins let go one by one."""
@@ -97,6 +104,26 @@ def follow(
                 raise _error(system, lost, done) from None
             now, done = beyond
     return now, snaps
+
+
+def refined(system: PinsSystem, now: Configuration) -> Configuration:
+    """The configuration under the same statuses, with more digits of its tractions.
+
+    Clearance and motion have the digits of a double. Under loads far below earlier ones they leave the tractions few of
+    them. What is left of each condition is exact, and is solved for.
+    """
+    held, n = system.resting(now.rest), system.grid.size
+    active = DenseUnknowns(held, now.status)
+    tractions, motion = now.tractions, now.motion
+    for _ in range(0 if active.singular else 2):
+        left = held.displacement(tractions, motion, now.load, now.rest_gap)
+        left[n:] -= now.slip
+        balance = held.load_forces(now.load) - held.equilibrium @ tractions - held.motion_rows @ motion
+        more = active.solve(np.r_[-left[active.rows], balance])
+        tractions, motion = tractions + active.expand(more), motion + more[active.count :]
+    gap, slip = np.split(held.displacement(tractions, motion, now.load, now.rest_gap), 2)
+    found = ContactValues(tractions[:n], tractions[n:], gap, slip, now.status, motion)
+    return accept_solution(now, found, now.load)
 
 
 def _error(system: PinsSystem, lost: StepLostError, done: float) -> SolveError:

@@ -29,6 +29,7 @@ from fastpin.model.checks import (
     as_toml,
     choice,
     file_path,
+    instance,
     number,
     positive,
     string,
@@ -110,7 +111,7 @@ class JointFile(NamedTuple):
 
 def is_joint_file(text: str) -> bool:
     """Whether a TOML text has a section that only a joint file has."""
-    return re.search(r"^\s*\[(joint|\[(pin|plate)\])\]", text, re.MULTILINE) is not None
+    return re.search(r"^\s*\[(joint|\[(pin|plate)\])\]", instance("text", text, str, "text"), re.MULTILINE) is not None
 
 
 def read_joint(path: str | Path) -> JointFile:

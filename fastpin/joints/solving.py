@@ -16,9 +16,9 @@ from fastpin.joints.conditions import JointLoads, Motion, PinSection, RingBetwee
 from fastpin.joints.faying import FayingSurface
 from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import MOVES, Joint, JointPlate, whole_name
-from fastpin.joints.path import follow, unloaded
+from fastpin.joints.path import follow, refined, unloaded
 from fastpin.joints.result import JointResult, JointState, JointStates
-from fastpin.joints.states import Since, StateMaker
+from fastpin.joints.states import Since, StateMaker, residuals_of
 from fastpin.joints.system import PinsSystem, build
 from fastpin.lugs.plates import harmonic_sizes
 from fastpin.lugs.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
@@ -26,7 +26,7 @@ from fastpin.model.angles import BOTTOM
 from fastpin.model.checks import as_toml, check_callable, instance, items, known_name, number, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
-from fastpin.solver.configuration import Configuration
+from fastpin.solver.configuration import MAX_RESIDUAL, ROUNDED, Configuration
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.run import RunProgress
 from fastpin.solver.slip_tally import SlipTally
@@ -70,7 +70,8 @@ def solve_joint(
     joint : Joint
     corners : sequence of mappings
         Loads at the corners by the names of ``joint.load_names``: forces in N, stresses in Pa. A load that is left out
-        keeps its value. Between corners the loads are linear.
+        keeps its value. Between corners the loads are linear. A load below 1e-12 of its largest size is rounding, as at
+        a zero of a sine: it is taken as zero.
     nodes : int
         Nodes of each contact, all round.
     harmonics : int, optional
@@ -238,6 +239,8 @@ class JointTask:
                     load = np.r_[np.zeros(len(LOADS)), values[step] / unit, now.load[-2:]]
                     begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size))
                     now, more = follow(system, begun, load, memory, report)
+                    if max(residuals_of(system, now).values()) > MAX_RESIDUAL:
+                        now = refined(system, now)
                     snaps += more
                     acting = dict(zip(joint.load_names, values[step].tolist(), strict=True))
                     recorder.add(maker.state(now, step, acting))
@@ -278,6 +281,7 @@ def load_values(joint: Joint, corners: Sequence[Mapping[str, float]]) -> np.ndar
         for name, value in corner.items():
             known_name(f"corner {place + 1}", name, names)
             values[place, names.index(name)] = number(name, value)
+    values[np.abs(values) <= ROUNDED * np.abs(values).max(axis=0)] = 0.0
     return values
 
 

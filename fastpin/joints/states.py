@@ -86,12 +86,11 @@ class StateMaker:
             If the configuration violates the contact conditions, or the equilibrium of a pin or a plate.
         """
         system, scales = self._system, self._system.scales
-        residuals = review(system.resting(now.rest), now).residuals
-        residuals["bodies"] = unbalanced(system, now)
+        residuals = residuals_of(system, now)
         worst = max(residuals, key=lambda name: residuals[name])
         if not residuals[worst] <= MAX_RESIDUAL:
             words = f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
-            raise ConvergenceError(words)
+            raise ConvergenceError(words, fraction=1.0)
         passed, count = system.passed(now.tractions), len(self._joint.sections)
         interfaces = [self._contact(now, step, place, passed[place], residuals) for place in range(len(passed))]
         contacts = [self._whole(now, place, interfaces) for place in range(count)]
@@ -194,6 +193,11 @@ class StateMaker:
             raise InputError(
                 "harmonics", f"too few for {self._joint.plates[section.plate].name}: {error.reason}"
             ) from None
+
+
+def residuals_of(system: PinsSystem, now: Configuration) -> dict[str, float]:
+    """Residuals of the contact conditions, and of the equilibrium of all pins and plates, by name."""
+    return review(system.resting(now.rest), now).residuals | {"bodies": unbalanced(system, now)}
 
 
 def unbalanced(system: PinsSystem, now: Configuration) -> float:

@@ -119,6 +119,7 @@ def pack_joint(case: JointFile, result: JointResult, error: str | None) -> bytes
     `error` tells why the result is incomplete.
     """
     task, attributes = _followed(case, None)
+    instance("result", result, JointResult, "a JointResult")
     file, rows = packed.PackedGroup(), defaultdict[str, list[layout.Rows]](list)
     holes: list[Any] = [contact.problem.plate_body.lug for contact in result[0].contacts]
     _write_head(file, task, attributes, holes)
@@ -134,7 +135,8 @@ def pack_joint(case: JointFile, result: JointResult, error: str | None) -> bytes
 
 def save_joint(content: bytes, path: Path) -> None:
     """Write a packed result to an HDF5 file. Nothing can go on with it."""
-    with files.replacing(path, result=True) as temporary, written_h5(temporary, False) as file:
+    instance("content", content, bytes, "bytes")
+    with files.replacing(file_path("path", path), result=True) as temporary, written_h5(temporary, False) as file:
         packed.from_bytes(content).copy_to(file)
 
 

@@ -13,6 +13,7 @@ import pytest
 import fastpin
 from fastpin import Grid, InputError, Interrupted, Material, MaterialPair, Problem, SolveError
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, solve_joint
+from fastpin.joints.solving import load_values
 from fastpin.lugs.outline import rectangle
 from fastpin.model import LOADS
 from fastpin.model.angles import BOTTOM
@@ -309,6 +310,27 @@ def test_unloading_and_reversal_release_the_pins() -> None:
     result = solve_joint(in_sheet(0.0, 6.0), [{"p0.x": FORCE}, {"p0.x": 0.0}, {"p0.x": -FORCE}], nodes=32)
     assert [state.contacts[0].in_contact for state in result] == [True, False, True]
     np.testing.assert_allclose(result[2].forces[0], [-FORCE, 0.0], atol=1e-5 * FORCE)
+
+
+@pytest.mark.gate
+def test_loads_far_below_earlier_ones_are_like_none() -> None:
+    """Clearance and motion of loose pins are larger by as much, and leave the tractions few digits."""
+    joint = lap((0.1, 0.1), 0.3)
+    nearly, exactly = (
+        solve_joint(joint, [{"strap.x": part * FORCE} for part in (1.0, small, -1.0)], nodes=24, harmonics=8)
+        for small in (1e-10, 0.0)
+    )
+    assert max(max(state.residuals.values()) for state in nearly) <= 1e-9
+    assert np.abs(nearly[1].forces).max() <= 1e-9 * FORCE
+    assert peaks(nearly, 2) == pytest.approx(peaks(exactly, 2), rel=1e-6)
+
+
+def test_the_rounding_of_a_sine_is_no_load() -> None:
+    joint = in_sheet(-3.0, 3.0)
+    sine = [{"p0.x": math.sin(0.5 * math.pi * k), "sheet.sxx": 1e-20} for k in range(5)]
+    values = load_values(joint, sine)
+    assert values[:, joint.load_names.index("p0.x")].tolist() == [0.0, 1.0, 0.0, -1.0, 0.0]
+    assert (values[:, joint.load_names.index("sheet.sxx")] == 1e-20).all()
 
 
 def test_a_result_can_be_pickled() -> None:
