@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from functools import partial
 
-from fastpin import casefile, figures, report, studies
-from fastpin.assess import outputs
+from fastpin import assess, casefile, figures, report, studies
 from fastpin.cli import terminal
 from fastpin.cli.progress import Bar
 from fastpin.errors import InputError
@@ -69,6 +67,6 @@ def _write_study(study: studies.convergence.Convergence, options: argparse.Names
     return terminal.write_outputs(
         files,
         options.json,
-        partial(outputs.whole_document, report.convergence.CONVERGENCE, study, {}, title=title),
+        lambda: assess.outputs.whole_document(report.convergence.CONVERGENCE, study, {}, title=title),
         lambda: [*([title] if title else []), *report.convergence.text(study).split("\n")],
     )

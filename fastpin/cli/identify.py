@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from functools import partial
 
-from fastpin import casefile, figures, report, studies
-from fastpin.assess import outputs
+from fastpin import assess, casefile, figures, report, studies
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_OK, EXIT_READING, as_options, check_outputs, write_outputs
 
@@ -26,10 +25,10 @@ def run(options: argparse.Namespace) -> int:
                 nodes=options.nodes, progress=progress_to(bar),
             )  # fmt: skip
     files = [
-        (options.csv, lambda path: outputs.write_csv([report.identify.loop_curve(found)], path)),
+        (options.csv, lambda path: assess.outputs.write_csv([report.identify.loop_curve(found)], path)),
         (options.plot, lambda path: figures.plot_identified(found, path, case.title)),
     ]
     head = [case.title, ""] if case.title else []
-    document = partial(outputs.whole_document, report.identify.IDENTIFIED, found, {}, title=case.title)
+    document = partial(assess.outputs.whole_document, report.identify.IDENTIFIED, found, {}, title=case.title)
     code = write_outputs(files, options.json, document, lambda: [*head, *report.identify.text(found).split("\n")])
     return code or (EXIT_OK if all(each.value > 0.0 for each in found.frictions) else EXIT_READING)

@@ -17,8 +17,8 @@ from tests.support.drawing import OF_SOME_PLATES
 from tests.support.faults import fault_of
 from tests.support.seats import BONDED, LOADS, SLIPS, TEXT, sample_case, sample_seat, stored_sample
 
-NOT_OF_STATES = {"scar", "wear", "damage", "gap"} | OF_SOME_PLATES
-"""Kinds that need a life of wear, or have nothing to show of this joint."""
+NOT_OF_STATES = {"gap"} | {name for name, kind in KINDS.items() if "result" not in kind.sources} | OF_SOME_PLATES
+"""Kinds that need a life of wear or several pins, or have nothing to show of this joint."""
 
 
 @pytest.fixture(scope="module")
