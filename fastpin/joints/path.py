@@ -19,12 +19,7 @@ from fastpin.joints.system import PinsSystem
 from fastpin.kernels import exchange
 from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.solver.configuration import (
-    Configuration,
-    accept_solution,
-    resting_status,
-    solve_statuses,
-)
+from fastpin.solver.configuration import Configuration, accept_solution, resting_status, solve_statuses
 from fastpin.solver.errors import OPENED, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.solver.increment import accepted, implicit_step
 from fastpin.solver.path import PathStep, StepLostError
@@ -109,8 +104,8 @@ def follow(
 def refined(system: PinsSystem, now: Configuration) -> Configuration:
     """The configuration under the same statuses, with more digits of its tractions.
 
-    Clearance and motion have the digits of a double. Under loads far below earlier ones they leave the tractions few of
-    them. What is left of each condition is exact, and is solved for.
+    Under loads far below earlier ones, the rounding of clearance and motion is large beside the tractions. The
+    residuals of the conditions are known to all digits, and two corrections solve for them.
     """
     held, n = system.resting(now.rest), system.grid.size
     active = DenseUnknowns(held, now.status)

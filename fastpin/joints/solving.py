@@ -239,11 +239,13 @@ class JointTask:
                     load = np.r_[np.zeros(len(LOADS)), values[step] / unit, now.load[-2:]]
                     begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size))
                     now, more = follow(system, begun, load, memory, report)
-                    if max(residuals_of(system, now).values()) > MAX_RESIDUAL:
+                    residuals = residuals_of(system, now)
+                    if max(residuals.values()) > MAX_RESIDUAL:
                         now = refined(system, now)
+                        residuals = residuals_of(system, now)
                     snaps += more
                     acting = dict(zip(joint.load_names, values[step].tolist(), strict=True))
-                    recorder.add(maker.state(now, step, acting))
+                    recorder.add(maker.state(now, residuals, step, acting))
                     seconds = before + time.perf_counter() - began
                     recorder.corner_reached(JointRestart(step + 1, now, since, snaps, seconds))
                     report(1.0)

@@ -77,8 +77,8 @@ class StateMaker:
         self._around = {ring.inner: ring.outer for ring in system.rings}
         self.holes = [self._hole(system.sections[self._around.get(k, k)]) for k in range(len(joint.sections))]
 
-    def state(self, now: Configuration, step: int, load: dict[str, float]) -> JointState:
-        """The state of a configuration at a corner, under a `load` by name, SI.
+    def state(self, now: Configuration, residuals: dict[str, float], step: int, load: dict[str, float]) -> JointState:
+        """The state of a configuration with these :func:`residuals <residuals_of>` at a corner, under a `load`, SI.
 
         Raises
         ------
@@ -86,7 +86,6 @@ class StateMaker:
             If the configuration violates the contact conditions, or the equilibrium of a pin or a plate.
         """
         system, scales = self._system, self._system.scales
-        residuals = residuals_of(system, now)
         worst = max(residuals, key=lambda name: residuals[name])
         if not residuals[worst] <= MAX_RESIDUAL:
             words = f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
