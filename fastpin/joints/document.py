@@ -29,9 +29,9 @@ def document_of(value: Any) -> Any:
     if not is_dataclass(value):
         return value
     found = {one.name: document_of(getattr(value, one.name)) for one in fields(value)}
-    for name in ("bush", "inside"):  # joints without bushes stay as they were; all bushes have the plate outside
-        if not found.get(name, True) or name == "inside":
-            found.pop(name, None)
+    found.pop("inside", None)  # all bushes have the plate outside
+    if not found.get("bush", True):  # joints without bushes stay as they were
+        del found["bush"]
     return found
 
 

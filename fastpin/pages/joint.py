@@ -88,12 +88,11 @@ class JointSource:
         """
         if isinstance(shown, JointResult):
             return cls._of_result(shown, file)
-        stored = shown
-        found = cls(case_of(stored), result_of(stored), origin_of(stored), stored.path, stored.error)
+        found = cls(case_of(shown), result_of(shown), origin_of(shown), shown.path, shown.error)
         if file is not None:
             return replace(found, case_text=_same_file(found.case, file)[1])
         with contextlib.suppress(InputError, CaseFileError):  # the file is another joint, or none
-            found = replace(found, case_text=_same_file(found.case, stored.path.with_suffix(".toml"))[1])
+            found = replace(found, case_text=_same_file(found.case, shown.path.with_suffix(".toml"))[1])
         return found
 
     @classmethod
@@ -187,7 +186,7 @@ def overview(source: JointSource) -> PageSection:
     status = Text(f"Complete: {'the only load point' if corners == 1 else f'all {corners:,} load points'} solved.")
     if not source.is_complete:
         why = f" The reason: {source.error}." if source.error else ""
-        how = f" fastpin joint --resume {source.path} goes on with it." if source.path is not None else ""
+        how = f" Continue with: fastpin joint --resume {source.path}." if source.path is not None else ""
         status = Text(f"Unfinished: {reached:,} of {corners:,} load points.{why}{how}", "note")
     parts: list[SectionPart] = [status, *_warnings(source)]
     parts += [Text(f"Note: {line}", "note") for line in report.remarks(source.judged)]

@@ -127,7 +127,7 @@ def record(
 
 
 def _look_at(path: Path) -> None:
-    """Warn the caller of its caller of doubtful states."""
+    """Warn of doubtful states, at the line that called the function that calls this one."""
     with StoredResult(path) as stored:
         warn_of(stored.doubts(), 3)
 
