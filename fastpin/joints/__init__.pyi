@@ -1,9 +1,9 @@
-from .parts import Clamp as Clamp
-from .parts import Faying as Faying
 from .parts import Joint as Joint
-from .parts import JointPin as JointPin
 from .parts import JointPlate as JointPlate
-from .parts import tate_rosenfeld as tate_rosenfeld
+from .pins import Clamp as Clamp
+from .pins import Faying as Faying
+from .pins import JointPin as JointPin
+from .pins import tate_rosenfeld as tate_rosenfeld
 from .read import JOINT_EXAMPLE as JOINT_EXAMPLE
 from .read import JointFile as JointFile
 from .read import is_joint_file as is_joint_file

@@ -141,8 +141,6 @@ class JointLoads:
         Work of each load on these motions.
     columns : sequence of (int, str, int)
         Loads within plates: the plate, the name of its column, the place of the load.
-    fit : ndarray, shape (sections,)
-        How far the fit opens the gap of each section, over its radius.
 
     Two more loads follow: the fit, from 0 to 1, and the springs of loose pins, which is always 1.
     """
@@ -151,7 +149,6 @@ class JointLoads:
     moving: Sequence[Motion]
     plates: np.ndarray
     columns: Sequence[tuple[int, str, int]]
-    fit: np.ndarray
 
 
 def sections_of_pins(sections: Sequence[PinSection], rings: Sequence[RingBetween]) -> list[list[int]]:

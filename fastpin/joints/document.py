@@ -7,11 +7,14 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from fastpin.bodies import Bushing
-from fastpin.joints.parts import BEAM, Clamp, Joint, JointPin, JointPlate
+from fastpin.joints.parts import Joint, JointPlate
+from fastpin.joints.pins import BEAM, Clamp, JointPin
 from fastpin.lugs.outline import Hole, Part, PartLoad
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import law_entries, law_from
 from fastpin.model.materials import Material
+from fastpin.model.profile import InitialGap, Profile
+from fastpin.model.profile_terms import TERMS
 
 
 def document_of(value: Any) -> Any:
@@ -26,12 +29,15 @@ def document_of(value: Any) -> Any:
         return {name: document_of(each) for name, each in value.items()}
     if isinstance(value, tuple):
         return [document_of(each) for each in value]
+    if isinstance(value, InitialGap):
+        return {name: profile.entries() for name, profile in value.given.items()}
     if not is_dataclass(value):
         return value
     found = {one.name: document_of(getattr(value, one.name)) for one in fields(value)}
     found.pop("inside", None)  # all bushes have the plate outside
-    if not found.get("bush", True):  # joints without bushes stay as they were
-        del found["bush"]
+    for name in ("bush", "gap"):  # joints without bushes and gaps stay as they were
+        if not found.get(name, True):
+            del found[name]
     return found
 
 
@@ -64,6 +70,7 @@ def joint_from(document: Mapping[str, Any]) -> Joint:
                 "clamp": None if each["clamp"] is None else Clamp(**each["clamp"]),
                 "heads": each["heads"] if each["flexibility"] == BEAM else None,  # older files have 0 there
                 "bush": _bushes(each.get("bush")),
+                "gap": _gaps(each.get("gap", {})),
             },
         )
         for each in document["pins"]
@@ -78,6 +85,18 @@ def _bushes(table: Mapping[str, Any] | None) -> Bushing | dict[str, Bushing] | N
     if isinstance(table.get("outer_radius", {}), float):
         return Bushing(**{**table, "material": _material(table["material"])})
     return {name: _bushes(each) for name, each in table.items()}  # type: ignore[misc]
+
+
+def _gaps(table: Mapping[str, Any]) -> dict[str, InitialGap]:
+    """The initial gaps by plate."""
+    found = {}
+    for plate, profiles in table.items():
+        terms = {
+            name: [TERMS[each["kind"]](**{key: value for key, value in each.items() if key != "kind"}) for each in of]
+            for name, of in profiles.items()
+        }
+        found[plate] = InitialGap(**{name: Profile(tuple(of)) for name, of in terms.items()})
+    return found
 
 
 def _placed(kind: Any, table: Mapping[str, Any]) -> Any:

@@ -16,9 +16,11 @@ from fastpin.casefile.beside import read_assessment, read_crack
 from fastpin.casefile.bodies import BodySection
 from fastpin.casefile.lug import limits_of, point_of
 from fastpin.casefile.materials import read_material
+from fastpin.casefile.profiles import GAP_KEYS, read_gap
 from fastpin.casefile.toml_text import CaseText, Inside, Section, parse_text, read_text
 from fastpin.errors import InputError
-from fastpin.joints.parts import REMOTE_NAMES, Clamp, Joint, JointPin, JointPlate, tate_rosenfeld
+from fastpin.joints.parts import REMOTE_NAMES, Joint, JointPlate
+from fastpin.joints.pins import Clamp, JointPin, tate_rosenfeld
 from fastpin.joints.result import SectionCrack, check_crack, check_fatigue
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
 from fastpin.lugs.outline import Part, rectangle
@@ -38,6 +40,7 @@ from fastpin.model.checks import (
 )
 from fastpin.model.keys import ANY, CASE, ITSELF, MATERIAL, of
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
+from fastpin.model.profile import InitialGap
 
 JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8")
 """A commented joint file: a single lap of three bolts."""
@@ -56,6 +59,7 @@ JOINT_KEYS: dict[str, tuple[str, ...]] = {
         "flexibility",
         "heads",
         "bush",
+        "gap",
         "clamp",
     ),
     "load": (),
@@ -73,7 +77,7 @@ _KINDS: dict[str, Any] = {
     | of("length", "at", "diameter")
     | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility", "heads": "moment"}
     | {"clamp": {"force": "force", "flexibility": "flexibility"}}
-    | {"bush": CASE["plate_body"] | {ANY: CASE["plate_body"]}},
+    | {"bush": CASE["plate_body"] | {ANY: CASE["plate_body"]}, "gap": CASE["gap"] | {ANY: CASE["gap"]}},
     "fatigue": CASE["fatigue"],
     "crack": CASE["crack"],
 }
@@ -123,18 +127,27 @@ def read_joint(path: str | Path) -> JointFile:
         See :func:`fastpin.read_case`.
     """
     path = file_path("path", path)
-    return parse_joint(read_text(path), str(path))
+    return parse_joint(read_text(path), str(path), path.parent)
 
 
-def parse_joint(text: str, name: str = "joint file") -> JointFile:
-    """Read a joint from a TOML text. `name` is the name of the file in error messages.
+def parse_joint(text: str, name: str = "joint file", folder: str | Path = ".") -> JointFile:
+    """Read a joint from a TOML text.
+
+    Parameters
+    ----------
+    text : str
+    name : str
+        The name of the file in error messages.
+    folder : str or Path
+        Relative paths of CSV files of profiles start here.
 
     Raises
     ------
     CaseFileError, InputError
         See :func:`fastpin.read_case`.
     """
-    return parse_text(text, name, "joint file", joint_file_in)
+    place = file_path("folder", folder)
+    return parse_text(text, name, "joint file", lambda source: joint_file_in(source, place))
 
 
 def kinds_in(source: CaseText) -> dict[str, Any]:
@@ -144,8 +157,8 @@ def kinds_in(source: CaseText) -> dict[str, Any]:
     return _KINDS | {"load": {ANY: "force", **dict.fromkeys(stresses, "traction")}}
 
 
-def joint_file_in(source: CaseText) -> JointFile | None:
-    """Read the tables of a text. What is returned has no meaning if the text has faults."""
+def joint_file_in(source: CaseText, folder: Path) -> JointFile | None:
+    """Read the tables of a text, with files of a folder. What is returned has no meaning if the text has faults."""
     source.to_si(kinds_in(source), True)
     source.check_sections(JOINT_KEYS, ("plate", "pin", "load"))
     title, settings = source.root.checked("title", string) or "", source.section("joint")
@@ -154,7 +167,7 @@ def joint_file_in(source: CaseText) -> JointFile | None:
     harmonics = settings.checked("harmonics", whole_number, 2, MOST_HARMONICS)
     times = settings.checked("repeat", whole_number, 1, MOST_CORNERS) or 1
     plates = [_plate(source, block) for block in _required(source, "plate")]
-    pins = [each for block in _required(source, "pin") for each in _pins(source, block, plates)]
+    pins = [each for block in _required(source, "pin") for each in _pins(source, block, plates, folder)]
     loads = _required(source, "load")
     how = read_assessment(source, source.section("fatigue")) if "fatigue" in source.root else None
     crack = _crack(source) if "crack" in source.root else None
@@ -260,7 +273,7 @@ def _outline(block: Section) -> tuple[Part, ...] | None:
     return None if x is None or y is None else rectangle(x, y)
 
 
-def _pins(source: CaseText, block: Section, plates: list[JointPlate | None]) -> list[JointPin | None]:
+def _pins(source: CaseText, block: Section, plates: list[JointPlate | None], folder: Path) -> list[JointPin | None]:
     """The pins of a block; None for each that is wrong (reported)."""
     for key in ("name", "at", "diameter", "plates"):
         block.require(key)
@@ -284,6 +297,8 @@ def _pins(source: CaseText, block: Section, plates: list[JointPlate | None]) -> 
         common["bush"] = _bushes(source, block, through)
         if common["bush"] is None:
             return [None]
+    if "gap" in block:
+        common["gap"] = _gaps(source, block, through, 0.5 * diameter, folder)
     for key in (key for key in ("clearance", "friction", "heads") if key in block):
         common[key] = block.value(key)
     return [_made(block, JointPin, name=name, at=at, **common) for name, at in zip(names, places, strict=True)]
@@ -305,6 +320,30 @@ def _bushes(source: CaseText, block: Section, through: list[str]) -> Bushing | d
         return None
     found = {name: _bush(source, Inside(source, inner, name, one), f" in bush.{name}") for name, one in each.items()}
     return None if None in found.values() else found  # type: ignore[return-value]
+
+
+def _gaps(
+    source: CaseText, block: Section, through: list[str], radius: float, folder: Path
+) -> InitialGap | dict[str, InitialGap] | None:
+    """The initial gap in all plates, or in each plate that is named; without one where it is wrong (reported)."""
+    table = block.value("gap")
+    if not isinstance(table, dict):
+        block.report(f"gap: must be a table {{ hole, pin }}, not {as_toml(table)}", "gap")
+        return None
+    inner = Inside(source, block, "gap", table)
+    if not any(isinstance(one, dict) for name, one in table.items() if name in through and name not in GAP_KEYS):
+        inner.check_keys(GAP_KEYS, " in gap")
+        return read_gap(inner, folder, radius, False)
+    inner.check_keys(through, " in gap", f"; the plates of the pin are {', '.join(through)}")
+    found = {}
+    for name in (name for name in through if name in table):
+        if not isinstance(table[name], dict):
+            inner.report(f"gap.{name}: must be a table {{ hole, pin }}, not {as_toml(table[name])}", name)
+            continue
+        own = Inside(source, inner, name, table[name])
+        own.check_keys(GAP_KEYS, f" in gap.{name}")
+        found[name] = read_gap(own, folder, radius, False)
+    return found
 
 
 def _bush(source: CaseText, table: Section, where: str) -> Bushing | None:

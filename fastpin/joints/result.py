@@ -18,7 +18,8 @@ from fastpin.damage.spectrum import NoChangeError, SpectrumDamage
 from fastpin.errors import InputError
 from fastpin.joints.bending import bending_moments
 from fastpin.joints.hole import in_hole
-from fastpin.joints.parts import BEAM, Joint, whole_name
+from fastpin.joints.parts import Joint
+from fastpin.joints.pins import BEAM, whole_name
 from fastpin.model import crack as crack_model
 from fastpin.model.assessment import FatigueAssessment, check_assessment
 from fastpin.model.checks import check_callable, instance, known_name, string, true_or_false

@@ -15,11 +15,12 @@ from fastpin.errors import InputError
 from fastpin.joints.conditions import JointLoads, Motion, PinSection, RingBetween
 from fastpin.joints.faying import FayingSurface
 from fastpin.joints.hole import HoleInPlate
-from fastpin.joints.parts import MOVES, Joint, JointPlate, whole_name
+from fastpin.joints.parts import MOVES, Joint, JointPlate
 from fastpin.joints.path import follow, refined, unloaded
+from fastpin.joints.pins import whole_name
 from fastpin.joints.result import JointResult, JointState, JointStates
 from fastpin.joints.states import Since, StateMaker, residuals_of
-from fastpin.joints.system import PinsSystem, build
+from fastpin.joints.system import FIT, PinsSystem, build
 from fastpin.lugs.plates import harmonic_sizes
 from fastpin.lugs.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
 from fastpin.model.angles import BOTTOM
@@ -233,7 +234,7 @@ class JointTask:
             recorder.begin(maker.holes)
             now = unloaded(system) if start is None else start.configuration
             try:
-                if start is None and system.given.fit.any():
+                if start is None and system.loads[:, FIT].any():
                     now, snaps = follow(system, now, np.r_[now.load[:-2], 1.0, 1.0], memory, lambda part: report(0.0))
                 for step in range(first, len(values)):
                     load = np.r_[np.zeros(len(LOADS)), values[step] / unit, now.load[-2:]]
@@ -380,8 +381,7 @@ def joint_system(
             on_pins[pins[part], "xy".index(what), place] = 1.0
         else:
             on_plates[moving.index(Motion(places[part], 1.0 + 0j if what == "x" else 1j)), place] = 1.0
-    fit = np.minimum(clearances, 0.0) / [each.problem.hole_radius for each in sections]
-    given = JointLoads(on_pins, moving, on_plates, columns, fit)
+    given = JointLoads(on_pins, moving, on_plates, columns)
     faying, outer = [], {ring.inner: ring.outer for ring in rings}
     for pin_name, clamp, *pair in joint.faying:
         ends = [joint.place(pin_name, plate) for plate in pair]

@@ -18,6 +18,7 @@ from fastpin.joints.result import FayingState, JointState
 from fastpin.joints.system import PinsSystem
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.lugs.several_holes import HolesCompliance
+from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, review
 from fastpin.solver.errors import ConvergenceError
@@ -124,8 +125,7 @@ class StateMaker:
             status = np.where(status == OPEN, OPEN, SLIP_POSITIVE).astype(np.int8)
         first = self._since.rest[place]
         if (status != OPEN).any() and np.isnan(first).any():
-            way = math.hypot(x, y)
-            first[:] = float(system.initial_gap[nodes].max()) / way * np.array([x, y]) if way else 0.0
+            first[:] = _resting_place(system.initial_gap[nodes], grid, x, y)
         rest = np.zeros(2) if np.isnan(first).any() else first
         datum = (rest[1] * np.cos(grid.theta) - rest[0] * np.sin(grid.theta)) * scales.displacement
         tally: dict[str, Any] = {**now.slip_tally.part(np.arange(nodes.start, nodes.stop)).fields(scales)}
@@ -192,6 +192,17 @@ class StateMaker:
             raise InputError(
                 "harmonics", f"too few for {self._joint.plates[section.plate].name}: {error.reason}"
             ) from None
+
+
+def _resting_place(gap: np.ndarray, grid: Grid, x: float, y: float) -> np.ndarray:
+    """Where a rigid pin rests that goes from the middle of a hole with the `gap` (n,) towards (x, y), shape (2,)."""
+    way = math.hypot(x, y)
+    if not way:
+        return np.zeros(2)
+    ahead = (np.cos(grid.theta) * x + np.sin(grid.theta) * y) / way
+    is_round = gap.min() == gap.max()
+    reach = gap.max() if is_round else np.divide(gap, ahead, out=np.full_like(gap, np.inf), where=ahead > 0.0).min()
+    return float(reach) / way * np.array([x, y])
 
 
 def residuals_of(system: PinsSystem, now: Configuration) -> dict[str, float]:

@@ -31,6 +31,9 @@ from fastpin.model.loads import LOADS, P, Q
 PinnedEdge = tuple[PinSection, np.ndarray, np.ndarray, np.ndarray]
 """The edge of a hole: a section, the rows of its nodes, and its basis in the harmonics of the hole."""
 
+FIT = -2
+"""Place of the fit in a load vector: how far it opens the gaps."""
+
 FAR = 1e-12
 """Least displacement of a hole by the other ones that counts, in parts of its own compliance."""
 
@@ -192,7 +195,7 @@ def build(
         local += system.loads[:, [Q, P]] @ (system.equilibrium[:2] * [[1.0], [-1.0]])
         matrix[np.ix_(own, own)] = stretch[a] * one.radius * local
         motion[own, 3 * a : 3 * a + 3] = system.motion * [1.0, 1.0, one.radius]
-        loads[own[: own.size // 2], -2] = given.fit[a] * one.problem.hole_radius / scales.displacement
+        loads[own[: own.size // 2], FIT] = stretch[a] * np.minimum(system.concentric_gap, 0.0)
     beta, within = scales.displacement / force, {ring.inner for ring in rings}
     _couple(rings, sections, nodes, beta, matrix)
     in_plates = [a for a in range(len(sections)) if a not in within]

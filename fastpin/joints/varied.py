@@ -51,7 +51,7 @@ class BaseJoint:
     Parameters
     ----------
     text, name, folder, units
-        See :class:`fastpin.studies.variation.BaseCase`. No file is named in a joint file.
+        See :class:`fastpin.studies.variation.BaseCase`.
 
     Raises
     ------
@@ -63,7 +63,7 @@ class BaseJoint:
     is_whole = True
 
     def __init__(self, text: str, name: str, folder: Path, units: str = "") -> None:
-        self.name, source = name, CaseText(text)
+        self.name, self._folder, source = name, folder, CaseText(text)
         if source.faults:
             raise CaseFileError(name, source.faults)
         tables = source.root.table
@@ -140,7 +140,7 @@ class BaseJoint:
         text = self.text.with_tables(self._with(values))
         found = None
         with contextlib.suppress(TooManyFaultsError):
-            found = joint_file_in(text)
+            found = joint_file_in(text, self._folder)
         for name, value in values.items():
             section, _, load = name.partition(".")
             if section == "loads" and found is not None:
@@ -295,7 +295,7 @@ class BaseJoint:
         words = _WORDS.get(key) or known or key.replace("_", " ")
         words = f"{words} {' '.join(inner)}" if inner and key in ("clamp", "bush") else words
         of = f"all {section}s" if rest[0] == "*" else rest[0]
-        return f"{words} of {of}" + (f" in {inner[0]}" if inner and key in ("clearance", "friction") else "")
+        return f"{words} of {of}" + (f" in {inner[0]}" if inner and key in ("clearance", "friction", "gap") else "")
 
 
 def _unnamed(value: Any) -> Any:

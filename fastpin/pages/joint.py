@@ -21,7 +21,7 @@ from fastpin.figures.fatigue import crack_growth_of
 from fastpin.figures.joint import displacement_of, joint_of, share_bars_of, shares_of
 from fastpin.joints import JointFile, JointResult, parse_joint
 from fastpin.joints.document import document_of
-from fastpin.joints.parts import BEAM
+from fastpin.joints.pins import BEAM
 from fastpin.joints.solving import load_values
 from fastpin.model import ties
 from fastpin.model.case import About
@@ -252,6 +252,9 @@ def case(source: JointSource) -> PageSection:
         fits = ", ".join(
             f"{name}: clearance {unit['displacement'].text(pin.value_in('clearance', name), 5)}, "
             f"friction {pin.value_in('friction', name):.4g}{_bush_words(pin.bush_in(name), unit)}"
+            + "".join(
+                f", {of} profile {each.words(unit['displacement'].text)}" for of, each in pin.gap_in(name).given.items()
+            )
             for name in pin.plates
         )
         soft = "" if pin.flexibility in (0.0, BEAM) else f"; flexibility {unit['flexibility'].text(pin.flexibility, 4)}"

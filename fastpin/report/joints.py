@@ -23,7 +23,7 @@ from fastpin.joints import (
     SectionDamage,
     SectionMargin,
 )
-from fastpin.joints.parts import BEAM, whole_name
+from fastpin.joints.pins import BEAM, whole_name
 from fastpin.joints.result import JointInterface, interfaces_of
 from fastpin.model import angles, ties
 from fastpin.model.assessment import FatigueAssessment

@@ -33,7 +33,8 @@ from fastpin.errors import InputError
 from fastpin.joints.document import document_of
 from fastpin.joints.faying import SIDES
 from fastpin.joints.hole import HoleInPlate
-from fastpin.joints.parts import MOVES, whole_name
+from fastpin.joints.parts import MOVES
+from fastpin.joints.pins import whole_name
 from fastpin.joints.read import JointFile
 from fastpin.joints.result import JointResult, JointState, SectionCrack, check_crack
 from fastpin.joints.solving import JointRestart, JointTask, load_values

@@ -12,7 +12,8 @@ import numpy as np
 
 from fastpin.joints.document import joint_from
 from fastpin.joints.hole import HoleInPlate, in_hole
-from fastpin.joints.parts import Joint, whole_name
+from fastpin.joints.parts import Joint
+from fastpin.joints.pins import whole_name
 from fastpin.joints.result import FayingState, JointState, JointStates
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, JointTask
 from fastpin.model.angles import BOTTOM

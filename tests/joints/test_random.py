@@ -14,6 +14,7 @@ from fastpin.bodies import Bushing
 from fastpin.joints import Clamp, Joint, JointPin, JointPlate, JointState, solve_joint
 from fastpin.kernels.status import STICK
 from fastpin.lugs.outline import rectangle
+from fastpin.model import Profile
 from tests.support.tiers import seeds
 
 MATERIALS = (Material(72e9, 0.33), Material(210e9, 0.30), Material(110e9, 0.31))
@@ -62,6 +63,17 @@ def random_bushes(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float
             friction = None if is_bonded else float(rng.choice([0.0, 0.15, 0.5]))
             bushes[plate] = Bushing(material, 1.2, fit, friction=friction, bonded=is_bonded)
         pins.append(replace(pin, bush=bushes))
+    return replace(joint, pins=tuple(pins)), corners
+
+
+def random_gaps(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]]]:
+    """The same without bushes, with lobes of holes: small, or with bumps beyond the clearance."""
+    joint, corners = random_joint(rng)
+    unit = MaterialPair(MATERIALS[1], SHEET.material, "stress").beta_star * FORCE
+    lobes = [
+        (int(rng.integers(2, 6)), float(rng.choice([0.0, 0.02, 0.2])) * unit, float(rng.uniform())) for _ in range(3)
+    ]
+    pins = [replace(pin, gap=Profile.lobes(*each)) for pin, each in zip(joint.pins, lobes, strict=True)]
     return replace(joint, pins=tuple(pins)), corners
 
 
@@ -129,7 +141,9 @@ def check_state(state: JointState) -> None:
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize(("draw", "count"), [(random_joint, 6), (random_straps, 2), (random_bushes, 3)])
+@pytest.mark.parametrize(
+    ("draw", "count"), [(random_joint, 6), (random_straps, 2), (random_bushes, 3), (random_gaps, 2)]
+)
 def test_random_joints_meet_all_conditions_or_are_refused(draw: Callable[..., Any], count: int) -> None:
     refused, tried = 0, 0
     for seed in seeds(count):

@@ -332,6 +332,7 @@ class Valid:
             "Joint.is_stress.load": "sheet.sxx",
             "JointPin.value_in.name": "friction",
             "JointPin.value_in.plate": "sheet",
+            "JointPin.gap_in.plate": "sheet",
             "JointResult.of.pin": "a",
             "JointResult.of.plate": "sheet",
             "shares.plate": "sheet",
