@@ -165,11 +165,11 @@ def fatigue(
         and depth are given, the body is rigid, or the material lacks constants of the criterion.
     """
     stops = stops_of_one_problem(states)
+    check_body(stops[0].problem, body)
     if points is None:
         points = edge_points(stops, body, depth)
     elif depth is not None:
         raise InputError("depth", "can't be given together with points")
-    check_body(stops[0].problem, body)
     checks.instance("points", points, Points, "fastpin.Points")
     place = points.theta, points.depths(stops[0].problem, body) * stops[0].problem.hole_radius
     history = stress_history(stops, points, body)

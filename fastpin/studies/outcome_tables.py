@@ -154,6 +154,8 @@ def outcomes_in_text(source: CaseText, folder: Path, beside: Mapping[str, Any] =
     Relative names of files start in `folder`. `beside` has the sections of the case, for outcomes that leave their keys
     out. The outcomes have no meaning if the text has faults.
     """
+    if not isinstance(beside, Mapping):
+        raise InputError("beside", f"must be a dict of sections, not {as_toml(beside)}")
     found: Outcomes = {}
     section = source.section("outcomes")
     for name in section.table:

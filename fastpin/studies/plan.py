@@ -241,7 +241,7 @@ class Plan:
 
     def words(self, field: str) -> str:
         """Words for a varied field: its label, if it has one."""
-        return self.labels.get(field) or self._base.words(field)
+        return self.labels.get(checks.string("field", field)) or self._base.words(field)
 
     def case(self, point: Point) -> Any:
         """Return the case of one point, for :func:`fastpin.solve`; or the :class:`fastpin.joints.JointFile`.

@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
 
+import pytest
+
 from docs.beyond.figures import FIGURES
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
 from fastpin.published import catalog
@@ -15,6 +17,8 @@ from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
 from fastpin.studies.run_end import KEY_FIGURES
 from scripts.inline import Inline
 from tests.support.documents import page_text, statements, texts
+from tests.survey import calls
+from tests.survey.valid_values import Valid
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted((ROOT / "docs").glob("*.md"))
@@ -24,6 +28,20 @@ RECORDS = sorted((ROOT / "docs" / "decisions").glob("*.md"))
 def found(pattern: str, paths: Iterable[Path] = DOCUMENTS) -> set[tuple[Path, str]]:
     """Where a pattern stands: files and words."""
     return {(path, word) for path in paths for word in re.findall(pattern, path.read_text(encoding="utf-8"))}
+
+
+@pytest.mark.gate
+def test_each_parameter_of_the_reference_has_a_valid_value(tmp_path, monkeypatch) -> None:
+    """A new public name needs one in tests/survey/valid_values.py. The calls of the survey take minutes."""
+    monkeypatch.chdir(tmp_path)
+    targets = calls.public_targets()
+    caller, lacking = calls.Caller(targets, Valid()), []
+    for name in targets:
+        try:
+            caller.arguments(calls.Attempt(name, ()))
+        except LookupError as error:
+            lacking.append(str(error))
+    assert lacking == []
 
 
 def test_links_lead_somewhere() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import importlib
+import re
 import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -24,6 +24,7 @@ from fastpin import (
     lugs,
     model,
     published,
+    reading,
     report,
     studies,
 )
@@ -41,7 +42,7 @@ NODES = 31
 
 PLAN = 'title = "Friction"\n[grid]\n"contact.friction" = [0.2, 0.4]\n"solve.nodes" = [31]\n'
 
-TOLERANCES = 'samples = 3\n[tolerances]\n"contact.friction" = { from = 0.2, to = 0.5 }\n'
+TOLERANCES = 'case = "few.toml"\nsamples = 3\n[tolerances]\n"contact.friction" = { from = 0.2, to = 0.5 }\n'
 
 LUG = (
     '[plate]\nnu = 0.3\nplane = "strain"\nhole_radius = 1.0\n[outline]\nshape = "rectangle"\nx = [-2.5, 2.5]\n'
@@ -53,15 +54,6 @@ MATRIX = np.diag(0.1 ** np.repeat([0.0, 0.0, 1.0, 4.0], [2, 4, 4, 4]))
 
 JOINT = joints.parse_joint(joints.JOINT_EXAMPLE).joint
 """A joint of three pins in two straps."""
-
-PAIRED = joints.Joint(
-    (joints.JointPlate("sheet", fastpin.MATERIALS["aluminium"], 1.0),),
-    tuple(
-        joints.JointPin(name, at, fastpin.MATERIALS["steel"], 5e-3, ("sheet",), 1e-5, 0.3)
-        for name, at in (("a", 0j), ("b", 0.02 + 0j))
-    ),
-)
-"""A joint that is solved fast: two pins in an infinite plate."""
 
 RUBBED = np.cos(np.linspace(0.0, 4.0 * np.pi, 81))
 """Displacement and force of a measured loop, in parts of their largest."""
@@ -110,6 +102,16 @@ LAMINATE = model.Laminate.from_layup("[0/45/-45/90]s", PLY)
 """A laminate of plies."""
 
 
+PAIRED = joints.Joint(
+    (joints.JointPlate("sheet", PLATE, 1.0),),
+    tuple(
+        joints.JointPin(name, at, fastpin.MATERIALS["steel"], 5e-3, ("sheet",), 1e-5, 0.3)
+        for name, at in (("a", 0j), ("b", 0.02 + 0j))
+    ),
+)
+"""A joint that is solved fast: two pins in an infinite plate."""
+
+
 class Enough(FastpinError):  # noqa: N818 - no fault
     """The end of a call that would take long."""
 
@@ -135,9 +137,6 @@ class Valid:
     """
 
     def __init__(self) -> None:
-        with contextlib.suppress(ImportError):  # optional packages take seconds to import
-            damage.stress_life(1e8, 1e8, 1e6, 5.0)
-            importlib.import_module("xarray")
         pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], PLATE)
         problem = fastpin.Problem.from_load_parameter(pair, 0.1, 0.4)
         history = fastpin.LoadHistory([{"P": 1.0}]) + fastpin.LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).repeated(2)
@@ -158,7 +157,7 @@ class Valid:
         studies.sweep.run(limited.plan, "tolerances", executor=Inline())
         tolerance_rows = studies.sweep.rows(limited.plan, "tolerances")
         pressure = report.tolerances.tolerance_chart(limited, tolerance_rows, "largest_pressure")
-        convergence = fastpin.converge(problem, history, (51, 101, 201))
+        convergence = fastpin.converge(problem, history, (51, 61, 71))
         study = convergence.studies[0]
         fatigue = damage.fatigue(result, "smith-watson-topper")
         crack, law = cracks.Crack(-1.5), cracks.Walker(1e-10, 3.0)
@@ -172,7 +171,9 @@ class Valid:
         spectrum = damage.spectrum_damage(result, constants=STRENGTHS)
         laminated = fastpin.Problem(fastpin.MaterialPair(pair.pin, LAMINATE, "stress"), 0.01, 1e-5, 0.4)
         stressed = fastpin.solve(laminated, [{"P": 1e5}], nodes=NODES)
-        jointed = joints.solve_joint(PAIRED, [{"a.x": 1e6}], nodes=16)
+        jointed = fastpin.storage.record_joint(
+            joints.JointFile(PAIRED, [{"a.x": 1e6}, {"a.x": 0.0}], nodes=16), "joint.h5"
+        )
         loop = measured_loop(("ux", "Q"), 1e-5 * RUBBED, 1e5 * RUBBED)
         fitted = studies.FittedValue(0.4, 0.3, 0.5)
         identified = studies.Identified(
@@ -181,6 +182,9 @@ class Valid:
         )  # fmt: skip
         lug = casefile.parse_lug(LUG).lug
         compliance = bodies.Compliance(0.3, "strain", 1.0, MATRIX)
+        clamp = joints.Clamp(1e3, 0.2)
+        points = np.linspace(1.0, 2.0, 3)
+        hoop = reading.OutlineHoop(points, points, points, ["left", "left", "top"], set(), 1e6 * points)
         grid = result.grid
         made: Sequence[Any] = (
             pair, pair.pin, problem, history, history.blocks[0], result, state, cycle, result.cycles[-1], options, case,
@@ -209,7 +213,11 @@ class Valid:
             charts.lookup("kt_bearing", load_parameter=0.1, friction=0.4), charts.chart_formulas()[0],
             assess.failure_load(laminated, [{"P": 1e5}], distance=1e-3, nodes=NODES), PAIRED, PAIRED.pins[0],
             PAIRED.plates[0], jointed, jointed[0], identified, fitted,
-            joints.parse_joint(joints.JOINT_EXAMPLE),
+            joints.parse_joint(joints.JOINT_EXAMPLE), clamp, joints.Faying("a", clamp, "sheet", "other"),
+            joints.FayingState(np.zeros(2), np.zeros(2), 0.0), joints.SectionCrack("a", "sheet", planned), hoop,
+            hoop.peak, cracks.GrowthTogether(
+                problem, (crack,), law, points, *[points[:, None]] * 4, cracks.CrackFate.STOPS, 0.0, ()
+            ),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
@@ -240,6 +248,7 @@ class Valid:
         """Write a case, a plan, a lug, a history, materials, a compliance and a result into the present folder."""
         texts = {
             "case.toml": casefile.EXAMPLE,
+            "few.toml": re.sub("nodes = [0-9]+", f"nodes = {NODES}", casefile.EXAMPLE),
             "plan.toml": PLAN,
             "tolerances.toml": TOLERANCES,
             "lug.toml": LUG,
@@ -267,8 +276,8 @@ class Valid:
         """A valid object of a class, for a call of one of its methods."""
         if target == "fastpin.State.bush_fit":
             return self._bushed
-        if target == "fastpin.joints.JointPlate.lug":  # an infinite plate is none
-            return JOINT.plates[0]
+        if target in ("fastpin.joints.Joint.lug", "fastpin.joints.JointPlate.lug"):  # an infinite plate is none
+            return JOINT if owner is joints.Joint else JOINT.plates[0]
         if target in ("fastpin.Result.assessed_fatigue", "fastpin.Result.assessed_reserves"):
             return self._with_constants
         if owner.__name__ not in self.objects:
@@ -336,7 +345,26 @@ class Valid:
             "JointResult.of.pin": "a",
             "JointResult.of.plate": "sheet",
             "shares.plate": "sheet",
-            "JointPlate.lug.centres": [0j],
+            "JointPlate.lug.pins": {"a": 0j},
+            "JointPlate.lug.plane": "stress",
+            "Joint.has_outline.plate": "sheet",
+            "Joint.places.pin": "a",
+            "Joint.places.plate": "sheet",
+            "Joint.lug.pin": JOINT.pins[0].name,
+            "Joint.lug.plate": JOINT.pins[0].plates[0],
+            "JointPin.bush_in.plate": "sheet",
+            "JointPin.hole_radius.plate": "sheet",
+            "JointState.force.pin": "a",
+            "JointState.force.plate": "sheet",
+            "JointResult.knowing_plate.pin": "a",
+            "JointResult.knowing_plate.plate": "sheet",
+            "growth_together.first": 0.01,
+            "growth_together.last": 0.011,
+            "growth_together.cracks": [cracks.Crack(-1.5), cracks.Crack(-1.0)],
+            "solve_many.cases": [casefile.parse_case(casefile.EXAMPLE)],
+            "Plan.words.field": "contact.friction",
+            "Lug.from_document.content": casefile.parse_lug(LUG).lug.document(),
+            "Lug.from_document.hole_radius": 1.0,
             "JointPlate.lug.radius": 2.5e-3,
             "tate_rosenfeld.diameter": 5e-3,
             "tate_rosenfeld.pin": PLATE,
@@ -405,6 +433,9 @@ class Valid:
             "Result.report.path": "out.html",
             "WearResult.report.path": "out.html",
             "record.path": "out.h5",
+            "record_joint.path": "out.h5",
+            "load_joint.path": "joint.h5",
+            "stored_joint.path": "joint.h5",
             "record.nodes": NODES,
             "solve.nodes": NODES,
             "converge.nodes": (51, 101, 201),
