@@ -146,6 +146,13 @@ class First(NamedTuple):
         body = (k - 1.0) / (2.0 * (k + 1.0)) * self.b
         return -change * (2.0 * self.A + body) + 2.0 * k * math.log(radius) * self.L
 
+    def mean_translation(self, radius: float) -> np.ndarray:
+        """The same over the mean displacement of the area between the contact rim and `radius`, below 1."""
+        k, q = self.kolosov, radius * radius
+        body = (k - 1.0) / (2.0 * (k + 1.0)) * self.b
+        log = -0.5 - q * math.log(radius) / (1.0 - q)  # the mean of ln r
+        return -0.5 * (1.0 - q) * (2.0 * self.A + body) + 2.0 * k * log * self.L
+
 
 def first(other: float, kolosov: float, load: str) -> First:
     """The first harmonic of a wall whose other rim is held, carries the force as `load` says, or is free ("body").

@@ -139,7 +139,7 @@ class BodyPair:
         Parameters
         ----------
         hub, gauge : float or None
-            Radii in the pin and in the plate over R. None: the bore of a hollow pin, the mean of a body-loaded solid
+            Radii in the pin and in the plate over R. None: the mean of a body-loaded pin, the bore of another hollow
             pin, the datum of the rotation of any other pin; the outer rim of a ring, the edge of the hole in any other
             plate.
         """

@@ -108,7 +108,9 @@ class Tube(PinBody):
         return found.wall(kolosov, bore, 1.0)
 
     def translation(self, rim: Rim, pin_load: PinLoad, hub: float | None) -> tuple[float, float]:
-        of_traction, of_force = self.first(rim, pin_load).translation(self.inner(rim) if hub is None else hub)
+        first, bore = self.first(rim, pin_load), self.inner(rim)
+        is_mean = hub is None and self.load == "body"
+        of_traction, of_force = first.mean_translation(bore) if is_mean else first.translation(hub or bore)
         return of_force * rim.compliance, -of_traction * rim.compliance
 
     def load_words(self, pin_load: PinLoad) -> str:

@@ -274,6 +274,9 @@ def _draw_hole(
     panel.pcolormesh(
         ring.real, ring.imag, np.vstack([hoop, hoop]), cmap="RdBu_r", norm=norm, shading="gouraud", zorder=-1.0
     )
+    if pin.bore_radius:
+        bore = centre + factor * pin.bore_radius * np.exp(1j * theta)
+        panel.plot(bore.real, bore.imag, color="0.2", linewidth=0.8)
     for each in filter(None, (contact.seat, contact)):  # a bush and its bore, or the hole
         own = factor * each.problem.hole_radius
         edge = centre + own * np.exp(1j * theta)

@@ -11,7 +11,46 @@ import numpy as np
 from fastpin.model.materials import Material
 
 SHEAR = 0.9
-"""Coefficient of shear of a round section, from its strain energy."""
+"""Coefficient of shear of a solid round section, from its strain energy."""
+
+
+class RoundBar(NamedTuple):
+    """A round pin, solid or hollow, as a bar.
+
+    Attributes
+    ----------
+    material : Material
+    radius : float
+        m.
+    bore_radius : float
+        m; 0 of a solid pin.
+    """
+
+    material: Material
+    radius: float
+    bore_radius: float = 0.0
+
+    @property
+    def second_moment(self) -> float:
+        """Second moment of area, m^4."""
+        return 0.25 * math.pi * (self.radius**4 - self.bore_radius**4)
+
+    @property
+    def bending(self) -> float:
+        """Moment per curvature, N m^2."""
+        return self.material.E * self.second_moment
+
+    @property
+    def shear(self) -> float:
+        """Force per angle of shear, N.
+
+        The coefficient of a tube is Cowper's for nu = 1/2, which is that of the strain energy for a solid pin. Source:
+        G. R. Cowper, "The shear coefficient in Timoshenko's beam theory", J. Appl. Mech. 33 (1966), as usually quoted.
+        """
+        part = (self.bore_radius / self.radius) ** 2
+        coefficient = SHEAR / (1.0 + 2.6 * part / (1.0 + part) ** 2)
+        area = math.pi * (self.radius**2 - self.bore_radius**2)
+        return coefficient * self.material.shear_modulus * area
 
 
 class Coherence(NamedTuple):
@@ -45,7 +84,7 @@ def springs(flexibilities: Sequence[float]) -> Coherence:
     return Coherence(differences, np.tril(np.ones((further, count))) * soft[:, None], soft)
 
 
-def beam(material: Material, radius: float, edges: Sequence[float], first: int, heads: float) -> Coherence:
+def beam(bar: RoundBar, edges: Sequence[float], first: int, heads: float) -> Coherence:
     """A round pin as a Timoshenko beam, by the equation of three moments with the deflection by shear.
 
     Each section loads the pin in its middle. The ends of the pin turn freely, or against the stiffness of its heads.
@@ -53,9 +92,7 @@ def beam(material: Material, radius: float, edges: Sequence[float], first: int, 
 
     Parameters
     ----------
-    material : Material
-    radius : float
-        m.
+    bar : RoundBar
     edges : sequence of float
         Ends of the S sections along the pin, from 0 to its length, m; three sections at least, two with heads.
     first : int
@@ -66,8 +103,7 @@ def beam(material: Material, radius: float, edges: Sequence[float], first: int, 
     ends = np.asarray(edges, dtype=float)
     places, length = 0.5 * (ends[1:] + ends[:-1]), float(ends[-1])
     count, span = places.size, np.diff(places)[:, None]
-    inertia = material.E * 0.25 * math.pi * radius**4
-    shear = SHEAR * material.shear_modulus * math.pi * radius**2
+    inertia, shear = bar.bending, bar.shear
     moved, load = np.split(np.eye(2 * count), 2)  # displacements and loads on the pin, by both
     slope = np.diff(moved, axis=0) / span + np.cumsum(load, axis=0)[:-1] / shear  # by bending alone
     moment = np.tril(places[:, None] - places) @ load
@@ -87,7 +123,7 @@ def beam(material: Material, radius: float, edges: Sequence[float], first: int, 
 
 
 def bending_moments(
-    material: Material, radius: float, edges: Sequence[float], heads: float, loads: np.ndarray
+    bar: RoundBar, edges: Sequence[float], heads: float, loads: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """The moments in a pin of :func:`beam` under the loads on its sections, from these loads alone.
 
@@ -95,7 +131,7 @@ def bending_moments(
 
     Parameters
     ----------
-    material, radius, edges, heads
+    bar, edges, heads
         See :func:`beam`.
     loads : ndarray, shape (S, 2)
         Forces on the pin along x and y, N; they are in balance.
@@ -110,7 +146,7 @@ def bending_moments(
     ends = np.asarray(edges, dtype=float)
     middles, length = 0.5 * (ends[1:] + ends[:-1]), float(ends[-1])
     places = np.r_[0.0, middles, length]
-    ratio = heads * length / (material.E * 0.25 * math.pi * radius**4)
+    ratio = heads * length / bar.bending
     held = ratio / (2.0 + ratio) if math.isfinite(ratio) else 1.0
     lever = length - middles
     at_head = -(0.5 * (1.0 - held) * lever + held * 0.5 * lever**2 / length) @ loads  # both heads turn by their moments

@@ -35,7 +35,7 @@ def document_of(value: Any) -> Any:
         return value
     found = {one.name: document_of(getattr(value, one.name)) for one in fields(value)}
     found.pop("inside", None)  # all bushes have the plate outside
-    for name in ("bush", "gap"):  # joints without bushes and gaps stay as they were
+    for name in ("bush", "gap", "bore_radius"):  # joints without them stay as they were
         if not found.get(name, True):
             del found[name]
     return found

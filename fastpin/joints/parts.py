@@ -9,7 +9,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from fastpin.bodies.body import PlateBody
-from fastpin.bodies.kinds import INFINITE_PLATE
+from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
+from fastpin.bodies.pins import Tube
 from fastpin.errors import InputError
 from fastpin.joints.bending import Coherence, beam, springs
 from fastpin.joints.hole import HoleInPlate
@@ -304,7 +305,7 @@ class Joint:
         """What ties the sections of a pin to one another, SI."""
         of = [next(plate for plate in self.plates if plate.name == name) for name in pin.plates]
         if isinstance(pin.flexibility, str):
-            return beam(pin.material, pin.radius, self.edges(pin), of[0].slices, pin.heads or 0.0)
+            return beam(pin.bar, self.edges(pin), of[0].slices, pin.heads or 0.0)
         soft = [0.0 if number else pin.flexibility for plate in of for number in range(plate.slices)]
         return springs(soft[1:])
 
@@ -359,11 +360,13 @@ class Joint:
                 body.check_pair(pair, pin.radius, False)
         except InputError as error:
             raise InputError(f"pin.{pin.name}.bush.{error.field}", f"in {plate.name}: {error.reason}") from None
+        hollow = Tube(pin.bore_radius, "body") if pin.bore_radius else None
         try:
             return Problem(
                 pair, pin.radius, pin.value_in("clearance", plate.name), pin.value_in("friction", plate.name),
-                pin_load="body", plate_body=body, thickness=plate.thickness, unit_system=self.unit_system,
+                plate_body=body, thickness=plate.thickness, unit_system=self.unit_system,
                 gap=pin.gap_in(plate.name),
+                pin_load="centre" if hollow else "body", pin_body=hollow or SOLID_PIN,
             )  # fmt: skip
         except InputError as error:
             raise InputError(f"pin.{pin.name}.{error.field}", f"in {plate.name}: {error.reason}") from None

@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 from fastpin.bodies import Bushing
 from fastpin.bodies.kinds import INFINITE_PLATE
 from fastpin.errors import InputError
+from fastpin.joints.bending import SHEAR, RoundBar
 from fastpin.model import checks
 from fastpin.model.materials import Material
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
@@ -89,6 +90,9 @@ class JointPin:
         Initial gap beside the clearance, m, as of :class:`fastpin.Problem`: of a hole or a pin that is not round, or
         worn. One for each plate if they differ; plates that a mapping leaves out are round. It is kept as a mapping. At
         a bush it is that of its bore. All slices of a plate have the same.
+    bore_radius : float
+        Radius of the bore of a hollow pin, m; 0 of a solid one. Its forces enter as body forces, as those of a solid
+        pin, and the bore is free.
     heads : {"free", "held"} or float, optional
         Of a beam: its ends turn freely, as they do unless it is given; or do not turn, or by the angle of a moment:
         N m/rad. It is kept as a number, 0 or infinite.
@@ -111,12 +115,14 @@ class JointPin:
     heads: Any = None
     bush: Bushing | Mapping[str, Bushing] | None = None
     gap: InitialGap | ProfileLike | Mapping[str, InitialGap | ProfileLike] | None = None
+    bore_radius: float = 0.0
 
     def __post_init__(self) -> None:
         checks.check_fields(self, part_name, "name")
         checks.check_fields(self, checks.point, "at")
         checks.instance("material", self.material, Material, "a Material")
         checks.check_fields(self, checks.number, "radius", LEAST_RADIUS, MOST_RADIUS)
+        checks.check_fields(self, checks.not_negative, "bore_radius")
         names = checks.items("plates", self.plates, "a list of names")
         checks.set_fields(self, plates=tuple(checks.string("plates", name) for name in names))
         if not self.plates:
@@ -186,6 +192,11 @@ class JointPin:
         checks.known_name("plate", plate, self.plates)
         return self.bush.get(plate) if isinstance(self.bush, Mapping) else self.bush
 
+    @property
+    def bar(self) -> RoundBar:
+        """The pin as a bar, with the radius of its holes."""
+        return RoundBar(self.material, self.radius, self.bore_radius)
+
     def hole_radius(self, plate: str) -> float:
         """Radius of the hole in a plate, or in a slice, m: of the pin's own, or that of its bush."""
         bush = self.bush_in(plate)
@@ -204,12 +215,15 @@ class Faying(NamedTuple):
         return f"{self.pin} {self.plate}-{self.other}"
 
 
-def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], other: tuple[Material, float]) -> float:
+def tate_rosenfeld(
+    diameter: float, pin: Material, one: tuple[Material, float], other: tuple[Material, float], bore_radius: float = 0.0
+) -> float:
     """The flexibility of a fastener by shear and bending, m/N, of Tate and Rosenfeld's formula.
 
-    The bearing terms of the formula are left out: the contact has them. Source: Tate, M. B. and Rosenfeld, S. J.,
-    "Preliminary investigation of the loads carried by individual bolts in bolted joints", NACA TN 1051 (1946), as
-    usually quoted.
+    The bearing terms of the formula are left out: the contact has them. The formula is for a solid fastener. Here a
+    hollow one has the area, the second moment and the coefficient of shear of its tube. Source: Tate, M. B. and
+    Rosenfeld, S. J., "Preliminary investigation of the loads carried by individual bolts in bolted joints", NACA TN
+    1051 (1946), as usually quoted.
 
     Parameters
     ----------
@@ -218,6 +232,8 @@ def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], 
     pin : Material
     one, other : (Material, float)
         Both plates: material, and thickness, m.
+    bore_radius : float
+        Radius of the bore of a hollow fastener, m.
 
     Raises
     ------
@@ -232,9 +248,9 @@ def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], 
             raise InputError(name, f"must be a material and a thickness in m, not {checks.as_toml(plate)}")
         lengths.append(checks.number(name, plate[1], LEAST_RADIUS, MOST_RADIUS))
     a, b = lengths
-    area, inertia = 0.25 * math.pi * d * d, math.pi * d**4 / 64.0
-    shear = 4.0 * (a + b) / (9.0 * pin.shear_modulus * area)
-    bending = (a**3 + 5.0 * a * a * b + 5.0 * a * b * b + b**3) / (40.0 * pin.E * inertia)
+    bar = RoundBar(pin, 0.5 * d, checks.number("bore_radius", bore_radius, 0.0, 0.5 * d))
+    shear = 4.0 * SHEAR * (a + b) / (9.0 * bar.shear)
+    bending = (a**3 + 5.0 * a * a * b + 5.0 * a * b * b + b**3) / (40.0 * bar.bending)
     return shear + bending
 
 

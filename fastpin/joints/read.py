@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from fastpin.bodies import Bushing
+from fastpin.bodies.body import THINNEST
 from fastpin.casefile.beside import read_assessment, read_crack
 from fastpin.casefile.bodies import BodySection
 from fastpin.casefile.lug import limits_of, point_of
@@ -53,6 +54,7 @@ JOINT_KEYS: dict[str, tuple[str, ...]] = {
         "at",
         *MATERIAL_KEYS,
         "diameter",
+        "bore_radius",
         "plates",
         "clearance",
         "friction",
@@ -74,7 +76,7 @@ BUSH_KEYS = (*MATERIAL_KEYS, "outer_radius", "interference", "bonded", "friction
 _KINDS: dict[str, Any] = {
     "plate": MATERIAL | of("length", "thickness", "x", "y", "start") | {"parts": of("length", "to", "through")},
     "pin": MATERIAL
-    | of("length", "at", "diameter")
+    | of("length", "at", "diameter", "bore_radius")
     | {"clearance": {ITSELF: "length", ANY: "length"}, "flexibility": "flexibility", "heads": "moment"}
     | {"clamp": {"force": "force", "flexibility": "flexibility"}}
     | {"bush": CASE["plate_body"] | {ANY: CASE["plate_body"]}, "gap": CASE["gap"] | {ANY: CASE["gap"]}},
@@ -285,14 +287,18 @@ def _pins(source: CaseText, block: Section, plates: list[JointPlate | None], fol
     if len(names) != len(places):
         block.report(f"name: must name {len(places)} pins, as many as at has points, not {len(names)}", "name")
         return [None]
-    flexibility = _flexibility(block, material, diameter, through, plates)
+    most = 0.5 * (1.0 - THINNEST) * diameter
+    bore = block.checked("bore_radius", number, 0.0, most) if "bore_radius" in block else 0.0
+    if bore is None:
+        return [None]
+    flexibility = _flexibility(block, material, (diameter, bore), through, plates)
     if flexibility is None:
         return [None]
     clamp = block.checked("clamp", _clamp)
     if clamp is None and "clamp" in block:
         return [None]
     common = {"material": material, "radius": 0.5 * diameter, "plates": through, "flexibility": flexibility}
-    common["clamp"] = clamp
+    common |= {"clamp": clamp, "bore_radius": bore}
     if "bush" in block:
         common["bush"] = _bushes(source, block, through)
         if common["bush"] is None:
@@ -356,9 +362,12 @@ def _bush(source: CaseText, table: Section, where: str) -> Bushing | None:
 
 
 def _flexibility(
-    block: Section, material: Any, diameter: float, through: list[str], plates: list[JointPlate | None]
+    block: Section, material: Any, size: tuple[float, float], through: list[str], plates: list[JointPlate | None]
 ) -> float | Literal["beam"] | None:
-    """The flexibility of a pin, m/N, or that it is a beam; None if it is wrong (reported)."""
+    """The flexibility of a pin, m/N, or that it is a beam; None if it is wrong (reported).
+
+    `size` is the diameter and the radius of the bore, m.
+    """
     given = block.value("flexibility")
     if not isinstance(given, str):
         return block.checked("flexibility", number, 0.0) if given is not None else 0.0
@@ -371,7 +380,7 @@ def _flexibility(
     if given == "rigid" or len(of) < 2:
         return 0.0
     values = {
-        tate_rosenfeld(diameter, material, (a.material, a.thickness), (b.material, b.thickness))
+        tate_rosenfeld(size[0], material, (a.material, a.thickness), (b.material, b.thickness), size[1])
         for a, b in itertools.pairwise(of)
     }
     if len(values) > 1:

@@ -177,7 +177,7 @@ class JointState:
         loads = -self.forces[[place for place, (one, _) in enumerate(joint.sections) if one is of]]
         first = len(joint.places(pin, of.plates[0]))
         loads[:first] += np.array([self.load[f"{pin}.{axis}"] for axis in "xy"]) / first
-        return bending_moments(of.material, of.radius, joint.edges(of), of.heads or 0.0, loads)
+        return bending_moments(of.bar, joint.edges(of), of.heads or 0.0, loads)
 
     @property
     def moments(self) -> np.ndarray:

@@ -261,7 +261,8 @@ def case(source: JointSource) -> PageSection:
         soft = "; a beam" if pin.flexibility == BEAM else soft
         clamp = pin.clamp
         tight = "" if clamp is None else f"; clamp {unit['force'].text(clamp.force, 5)}, friction {clamp.friction:.4g}"
-        rows.append((pin.name, f"{pin.material.label or 'no name'}, at {at}", f"{fits}{soft}{tight}"))
+        bore = f", bore radius {length.text(pin.bore_radius)}" if pin.bore_radius else ""
+        rows.append((pin.name, f"{pin.material.label or 'no name'}{bore}, at {at}", f"{fits}{soft}{tight}"))
     wide = ", ".join(dict.fromkeys(length.text(2.0 * joint.radius_in(plate)) for plate in joint.plates))
     pins = Facts(f"Pins, holes {wide} wide", rows, ("pin", "material and place", "fit"))
     orders = ", ".join(dict.fromkeys(map(str, source.result.harmonics)))

@@ -223,9 +223,9 @@ def bending_columns(joint: Joint, rows: list[dict[str, Any]]) -> list[Column]:
 
 
 def bending_rows(result: JointResult) -> list[dict[str, Any]]:
-    """The largest bending moment of all states in each pin that is a beam, SI, and its stress 32 M/(pi d^3).
+    """The largest bending moment of all states in each pin that is a beam, SI, and its stress at the pin's surface.
 
-    The place counts along the pin from its end in its first plate. d is the diameter of the hole.
+    The place counts along the pin from its end in its first plate. The pin has the radius of the hole.
     """
     rows = []
     for pin in (pin for pin in result.joint.pins if pin.flexibility == BEAM):
@@ -233,7 +233,7 @@ def bending_rows(result: JointResult) -> list[dict[str, Any]]:
         sizes = np.array([np.hypot(*moments.T) for _, moments in found])
         step, at = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
         moment = float(sizes[step, at])
-        stress = 4.0 * moment / (math.pi * pin.radius**3)
+        stress = moment * pin.radius / pin.bar.second_moment
         place = float(found[step][0][at])
         rows.append({"pin": pin.name, "moment": moment, "stress": stress, "place": place, "step": int(step) + 1})
     return rows

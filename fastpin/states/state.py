@@ -520,8 +520,8 @@ class State(ReadOnly):
         Parameters
         ----------
         hub_radius : float, optional
-            Radius of the circle in the pin, m. The default is the bore of a hollow pin, the mean over a body-loaded
-            solid pin, and R / sqrt(kappa_I + 1) in any other pin.
+            Radius of the circle in the pin, m. The default is the mean over a body-loaded pin, the bore of another
+            hollow pin, and R / sqrt(kappa_I + 1) in any other pin.
         gauge_radius : float, optional
             Radius of the circle in the plate, m. The default is the outer rim of a ring, also round a bush, the
             supports of a :class:`fastpin.bodies.Compliance`, and the edge of the hole in an infinite plate, whose

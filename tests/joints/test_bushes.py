@@ -83,7 +83,10 @@ def stuck(joint: Joint, loads: dict[str, float]) -> tuple[np.ndarray, np.ndarray
 @pytest.mark.gate
 def test_bushes_of_the_plates_own_material_that_stick_change_nothing() -> None:
     """Levers, turns and displacements of bushes: the pins pass moments. The error falls to 6e-6 with 128 nodes."""
-    pins = [through_both(f"p{k}", at, 0.0, flexibility=0.07 * BETA) for k, at in enumerate((0.0, 9.0 + 0.7j))]
+    pins = [
+        through_both(f"p{k}", at, 0.0, flexibility=0.07 * BETA, bore_radius=bore)
+        for k, (at, bore) in enumerate(((0.0, 0.0), (9.0 + 0.7j, 0.5)))
+    ]
     bush = Bushing(ALUMINIUM, 1.3, friction=1.0, bonded=False)
     bushed = [replace(pin, bush=bush) for pin in pins]
     partly = [replace(pin, bush={"sheet": bush}) for pin in pins]

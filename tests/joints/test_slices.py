@@ -13,7 +13,7 @@ import pytest
 from fastpin import figures, report
 from fastpin.assess import outputs
 from fastpin.joints import Clamp, Joint, JointPin, JointPlate, JointResult, SectionCrack, parse_joint, solve_joint
-from fastpin.joints.bending import SHEAR, beam, bending_moments, springs
+from fastpin.joints.bending import RoundBar, beam, bending_moments, springs
 from fastpin.lugs.outline import PartLoad, rectangle
 from fastpin.model.crack import CrackGrowth
 from tests.support.laps import ALUMINIUM, BETA, FORCE, SHEETS, STEEL, lap
@@ -111,12 +111,14 @@ def test_heads_stiffen_the_joint(short: JointResult) -> None:
     assert held < 0.95 * free
 
 
-@pytest.mark.parametrize("heads", [0.0, 3e11, math.inf])
-def test_the_beam_is_that_of_finite_elements(heads: float) -> None:
+@pytest.mark.parametrize(("heads", "bore"), [(0.0, 0.0), (3e11, 0.0), (math.inf, 0.0), (3e11, 0.6)])
+def test_the_beam_is_that_of_finite_elements(heads: float, bore: float) -> None:
     rng = np.random.default_rng(5)
     edges = np.r_[0.0, np.cumsum(rng.uniform(0.3, 2.0, 5))]
     places, count = 0.5 * (edges[1:] + edges[:-1]), 5
-    modulus, shear = STEEL.E * 0.25 * math.pi, SHEAR * STEEL.shear_modulus * math.pi
+    modulus, shear = STEEL.E * 0.25 * math.pi * (1.0 - bore**4), STEEL.shear_modulus * math.pi * (1.0 - bore**2)
+    square = (1.0 + bore**2) ** 2
+    shear *= 6.0 * 1.5 * square / (10.0 * square + 26.0 * bore**2)  # Cowper's tube with nu = 1/2
     nodes = np.r_[edges[0], places, edges[-1]]
     stiffness = np.zeros((2 * nodes.size, 2 * nodes.size))
     for k, length in enumerate(np.diff(nodes)):  # Timoshenko elements, exact for loads at their ends
@@ -136,7 +138,7 @@ def test_the_beam_is_that_of_finite_elements(heads: float) -> None:
     load[2:6:2] = 0.5e6  # the force on the pin, on two sections
     moved = np.linalg.solve(stiffness, load)[2:-2:2]
     forces = ground * moved
-    found = beam(STEEL, 1.0, edges.tolist(), 2, heads)
+    found = beam(RoundBar(STEEL, 1.0, bore), edges.tolist(), 2, heads)
     left = found.displacements @ moved + found.forces @ forces - found.outside * 1e6
     size = np.abs(found.displacements) @ np.abs(moved) + np.abs(found.forces) @ np.abs(forces)
     assert np.max(np.abs(left) / size) < 1e-6
@@ -240,7 +242,7 @@ def test_names_of_slices_are_checked(short: JointResult) -> None:
 def test_the_moments_of_a_beam_under_a_force_in_its_middle(heads: float, ends: float, middle: float) -> None:
     edges = [0.0, 1e-9, 1.0 - 1e-9, 1.0 + 1e-9, 2.0 - 1e-9, 2.0]
     loads = np.array([[-0.5, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 0.0], [-0.5, 0.0]])
-    places, moments = bending_moments(STEEL, 0.1, edges, heads, loads)
+    places, moments = bending_moments(RoundBar(STEEL, 0.1), edges, heads, loads)
     assert (places[0], places[-1]) == (0.0, 2.0)
     np.testing.assert_allclose(moments[[0, 3, -1], 0], 2.0 * np.array([ends, middle, ends]), atol=1e-8)
     assert not moments[:, 1].any()

@@ -14,7 +14,10 @@ from tests.support.html import Page, words_of
 from tests.support.laps import SHEETS
 
 TEXT = SHEETS.replace("nodes = 24", "nodes = 16\nrepeat = 2").replace('"aluminium"', '"2024-T3"')
-TEXT = TEXT.replace("two bolts", "two <b>bolts</b>") + '\n[fatigue]\nover = "cycle"\n'
+TEXT = (
+    TEXT.replace("plates =", "bore_radius = 1e-3\nplates =").replace("two bolts", "two <b>bolts</b>")
+    + '\n[fatigue]\nover = "cycle"\n'
+)
 CASE = parse_joint(TEXT)
 
 
@@ -45,6 +48,7 @@ def test_a_page_has_shares_holes_lives_and_the_worst_contact(stored: Path) -> No
         "A sheet, B sheet",  # the first touches
         "result has no plate that moves under a load of its own",
         "equilibrium of every pin and plate",
+        "steel, bore radius 1 mm, at 0, 0 mm",
         "repeat = 2",  # the joint file beside the result
     ):
         assert words in found.text, words
