@@ -136,7 +136,7 @@ class JointRecorder(Protocol):
         """Take the next state."""
 
     def corner_reached(self, restart: JointRestart) -> None:
-        """Take the place from which the joint goes on. What it holds changes with the next corner."""
+        """Take the place from which the joint goes on."""
 
 
 class StatesInMemory:
@@ -216,8 +216,8 @@ class JointTask:
         SolveError, Interrupted
             See :func:`solve_joint`.
         """
-        joint, values, began = self.joint, self.values, time.perf_counter()
-        first, snaps, before = (0, 0, 0.0) if start is None else (start.corner, start.snaps, start.seconds)
+        values, began = self.values, time.perf_counter()
+        first, before = (0, 0.0) if start is None else (start.corner, start.seconds)
         step = first
         with deferred_interrupts() as caught, one_blas_thread():
 
@@ -227,39 +227,114 @@ class JointTask:
                 if self.progress is not None:
                     self.progress(step + part, len(values))
 
-            plates = [plate_compliance(joint, plate, self.harmonics, report) for plate in joint.plates]
-            system, unit = joint_system(joint, plates, values, self.nodes)
-            since = Since.start(len(system.sections), len(system.faying)) if start is None else start.since.copy()
-            maker, memory = StateMaker(joint, system, plates, since), TableauMemory(system)
-            recorder.begin(maker.holes)
-            now = unloaded(system) if start is None else start.configuration
-            try:
-                if start is None and system.loads[:, FIT].any():
-                    now, snaps = follow(system, now, np.r_[now.load[:-2], 1.0, 1.0], memory, lambda part: report(0.0))
-                for step in range(first, len(values)):
-                    load = np.r_[np.zeros(len(LOADS)), values[step] / unit, now.load[-2:]]
-                    begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size))
-                    now, more = follow(system, begun, load, memory, report)
-                    residuals = residuals_of(system, now)
-                    if max(residuals.values()) > MAX_RESIDUAL:
-                        now = refined(system, now)
-                        residuals = residuals_of(system, now)
-                    snaps += more
-                    acting = dict(zip(joint.load_names, values[step].tolist(), strict=True))
-                    recorder.add(maker.state(now, residuals, step, acting))
-                    seconds = before + time.perf_counter() - began
-                    recorder.corner_reached(JointRestart(step + 1, now, since, snaps, seconds))
-                    report(1.0)
-            except SolveError as error:
-                _say_where(error, joint, values, step)
-                raise
+            run = JointRun(JointMatrices.of(self.joint, reference_force(self.joint, values), self, report))
+            recorder.begin(run.holes)
+            if start is not None:
+                run.go_to(start, values[first - 1])
+            for step in range(first, len(values)):
+                recorder.add(run.step_to(values[step], report))
+                recorder.corner_reached(replace(run.restart, seconds=before + time.perf_counter() - began))
+                report(1.0)
 
 
-def _say_where(error: SolveError, joint: Joint, values: np.ndarray, step: int) -> None:
-    """Give an error the step, the fraction and the load at which the joint was lost."""
+@dataclass(frozen=True, eq=False)
+class JointMatrices:
+    """The matrices of a joint, from which it is followed. They never change, and several runs may share them.
+
+    Attributes
+    ----------
+    joint : Joint
+    plates : list of HolesCompliance
+    force : float
+        The reference force of all that has no dimensions, N/m: a power of two.
+    system : PinsSystem
+    """
+
+    joint: Joint
+    plates: list[HolesCompliance]
+    force: float
+    system: PinsSystem
+
+    @classmethod
+    def of(cls, joint: Joint, force: float, how: JointTask, report: Callable[[float], None]) -> Self:
+        """Fill the matrices. `how` has the nodes and the harmonics."""
+        plates = [plate_compliance(joint, plate, how.harmonics, report) for plate in joint.plates]
+        return cls(joint, plates, force, joint_system(joint, plates, force, how.nodes))
+
+    @property
+    def unit(self) -> np.ndarray:
+        """The unit of each load, SI, shape (loads,), in the order of ``joint.load_names``."""
+        joint, stresses = self.joint, [self.joint.is_stress(name) for name in self.joint.load_names]
+        return np.where(stresses, self.force / joint.radius, self.force * joint.plates[0].thickness)
+
+
+class JointRun:
+    """A joint that is led from load to load. It begins without load, and before any fit.
+
+    Parameters
+    ----------
+    matrices : JointMatrices
+
+    Attributes
+    ----------
+    matrices : JointMatrices
+    restart : JointRestart
+        Where the joint is. Its contents never change.
+    loads : ndarray, shape (loads,)
+        The loads there, SI, in the order of ``joint.load_names``.
+    """
+
+    def __init__(self, matrices: JointMatrices) -> None:
+        joint, system = matrices.joint, matrices.system
+        self.matrices, self.loads, self._unit = matrices, np.zeros(len(joint.load_names)), matrices.unit
+        self._maker, self._memory = StateMaker(joint, system, matrices.plates), TableauMemory(system)
+        since = Since.start(len(system.sections), len(system.faying))
+        self.restart = JointRestart(0, unloaded(system), since, 0, 0.0)
+
+    @property
+    def holes(self) -> list[HoleInPlate]:
+        """The hole of each section of the joint, without loads."""
+        return self._maker.holes
+
+    def go_to(self, restart: JointRestart, loads: np.ndarray) -> None:
+        """Go to a place that a run with equal matrices has reached under these `loads`."""
+        self.restart, self.loads = restart, loads
+
+    def step_to(self, loads: np.ndarray, report: Callable[[float], None]) -> JointState:
+        """Follow a straight step to these loads (loads,), SI, and return the state there.
+
+        `report` is called now and then with the part of the step that is done. After an error the run is where it was.
+
+        Raises
+        ------
+        SolveError
+            ``step``, ``fraction`` and ``load`` say where the joint was lost.
+        """
+        joint, system, here = self.matrices.joint, self.matrices.system, self.restart
+        now, since, snaps = here.configuration, here.since.copy(), here.snaps
+        try:
+            if not here.corner and system.loads[:, FIT].any():
+                now, snaps = follow(system, now, np.r_[now.load[:-2], 1.0, 1.0], self._memory, lambda part: report(0.0))
+            load = np.r_[np.zeros(len(LOADS)), loads / self._unit, now.load[-2:]]
+            begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size))
+            now, more = follow(system, begun, load, self._memory, report)
+            residuals = residuals_of(system, now)
+            if max(residuals.values()) > MAX_RESIDUAL:
+                now = refined(system, now)
+                residuals = residuals_of(system, now)
+            acting = dict(zip(joint.load_names, loads.tolist(), strict=True))
+            state = self._maker.state(now, since, residuals, here.corner, acting)
+        except SolveError as error:
+            _say_where(error, joint, here.corner, self.loads, loads)
+            raise
+        self.restart, self.loads = JointRestart(here.corner + 1, now, since, snaps + more, here.seconds), loads
+        return state
+
+
+def _say_where(error: SolveError, joint: Joint, step: int, before: np.ndarray, after: np.ndarray) -> None:
+    """Give an error the step, the fraction and the load at which the joint was lost, between two loads (loads,)."""
     part = 1.0 if error.fraction is None or not math.isfinite(error.fraction) else error.fraction
-    before = values[step - 1] if step else np.zeros_like(values[step])
-    load = dict(zip(joint.load_names, (before + part * (values[step] - before)).tolist(), strict=True))
+    load = dict(zip(joint.load_names, (before + part * (after - before)).tolist(), strict=True))
     error.step, error.fraction, error.load = step, part, load
     acting = ", ".join(f"{name} = {value:g}" for name, value in load.items() if value) or "no load"
     error.args = (f"step {step + 1}, at {100.0 * part:.4g} % ({acting}): {error}",)
@@ -278,14 +353,26 @@ def load_values(joint: Joint, corners: Sequence[Mapping[str, float]]) -> np.ndar
         raise InputError("corners", "must have at least one corner")
     values = np.zeros((len(given), len(names)))
     for place, corner in enumerate(given):
-        if not isinstance(corner, Mapping):
-            raise InputError("corners", f"corner {place + 1} must map loads to numbers, not {as_toml(corner)}")
-        values[place] = values[place - 1] if place else 0.0
-        for name, value in corner.items():
-            known_name(f"corner {place + 1}", name, names)
-            values[place, names.index(name)] = number(name, value)
+        values[place] = next_loads(names, corner, place, values[place - 1])
     values[np.abs(values) <= ROUNDED * np.abs(values).max(axis=0)] = 0.0
     return values
+
+
+def next_loads(names: Sequence[str], corner: Any, place: int, before: np.ndarray) -> np.ndarray:
+    """The loads at the corner with the number `place`, from 0, after those `before` (loads,), SI.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown, or a value is no finite number.
+    """
+    if not isinstance(corner, Mapping):
+        raise InputError("corners", f"corner {place + 1} must map loads to numbers, not {as_toml(corner)}")
+    found = before.copy()
+    for name, value in corner.items():
+        known_name(f"corner {place + 1}", name, names)
+        found[names.index(name)] = number(name, value)
+    return found
 
 
 def plate_compliance(
@@ -351,10 +438,20 @@ def _interfaces(joint: Joint, nodes: int) -> tuple[list[PinSection], list[RingBe
     return sections + around, rings, grids
 
 
-def joint_system(
-    joint: Joint, plates: list[HolesCompliance], values: np.ndarray, nodes: int
-) -> tuple[PinsSystem, np.ndarray]:
-    """The system of a joint, and the unit of each load, SI."""
+def reference_force(joint: Joint, values: np.ndarray) -> float:
+    """The reference force of a joint under loads (corners, loads), N/m: a power of two near the largest one.
+
+    Tractions, gaps and motions without dimensions are exact multiples of those with another power of two.
+    """
+    beta = joint.problem(*joint.sections[0]).surfaces.beta_star
+    clearances = [each.clearance for section in joint.sections for each in joint.problem(*section).interfaces]
+    stresses = np.array([joint.is_stress(name) for name in joint.load_names])
+    sizes = np.abs(values).max(axis=0) * np.where(stresses, joint.radius, 1.0 / joint.plates[0].thickness)
+    return 2.0 ** math.ceil(math.log2(float(sizes.max()) or float(np.abs(clearances).max()) / beta or 1.0))
+
+
+def joint_system(joint: Joint, plates: list[HolesCompliance], force: float, nodes: int) -> PinsSystem:
+    """The system of a joint with a reference force, N/m."""
     names, thick, radius = joint.load_names, joint.plates[0].thickness, joint.radius
     radii = [joint.radius_in(plate) for plate in joint.plates]
     places = {plate.name: k for k, plate in enumerate(joint.plates)}
@@ -362,15 +459,12 @@ def joint_system(
     beta = joint.problem(*joint.sections[0]).surfaces.beta_star
     sections, rings, grids = _interfaces(joint, nodes)
     clearances = np.array([each.problem.clearance for each in sections])
-    stresses = np.array([joint.is_stress(name) for name in names])
-    sizes = np.abs(values).max(axis=0) * np.where(stresses, radius, 1.0 / thick)
-    force = 2.0 ** math.ceil(math.log2(float(sizes.max()) or float(np.abs(clearances).max()) / beta or 1.0))
     moving = [Motion(places[plate.name], way) for plate in joint.plates for way in MOVES[plate.moves]]
     on_pins, on_plates = np.zeros((len(pins), 2, len(names))), np.zeros((len(moving), len(names)))
     columns = []
     for place, name in enumerate(names):
         part, what = name.rsplit(".", 1)
-        if stresses[place]:
+        if joint.is_stress(name):
             columns.append((places[part], what, place))
             for row, motion in enumerate(moving):
                 if motion.plate == places[part] and what in plates[motion.plate].resultants:
@@ -390,5 +484,4 @@ def joint_system(
         limit, soft = clamp.limit / (force * thick), clamp.flexibility * thick / beta
         faying.append(FayingSurface((one, other), limit, soft, float(play)))
     coherence = [joint.coherence(pin).scaled(thick / beta) for pin in joint.pins]
-    system = build(sections, plates, given, grids, force, coherence, faying, rings)
-    return system, np.where(stresses, force / radius, force * thick)
+    return build(sections, plates, given, grids, force, coherence, faying, rings)

@@ -57,15 +57,13 @@ class Since:
 
 
 class StateMaker:
-    """Makes the states of one history, in order.
+    """Makes the states of a joint.
 
     Parameters
     ----------
     joint : Joint
     system : PinsSystem
     plates : list of HolesCompliance
-    since : Since
-        It is changed by every state.
 
     Attributes
     ----------
@@ -73,13 +71,17 @@ class StateMaker:
         The hole of each section of the joint, without loads.
     """
 
-    def __init__(self, joint: Joint, system: PinsSystem, plates: list[HolesCompliance], since: Since) -> None:
-        self._joint, self._system, self._plates, self._since = joint, system, plates, since
+    def __init__(self, joint: Joint, system: PinsSystem, plates: list[HolesCompliance]) -> None:
+        self._joint, self._system, self._plates = joint, system, plates
         self._around = {ring.inner: ring.outer for ring in system.rings}
         self.holes = [self._hole(system.sections[self._around.get(k, k)]) for k in range(len(joint.sections))]
 
-    def state(self, now: Configuration, residuals: dict[str, float], step: int, load: dict[str, float]) -> JointState:
+    def state(
+        self, now: Configuration, since: Since, residuals: dict[str, float], step: int, load: dict[str, float]
+    ) -> JointState:
         """The state of a configuration with these :func:`residuals <residuals_of>` at a corner, under a `load`, SI.
+
+        What has happened up to the corner before stands in `since`, to which this step is added.
 
         Raises
         ------
@@ -92,7 +94,7 @@ class StateMaker:
             words = f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
             raise ConvergenceError(words, fraction=1.0)
         passed, count = system.passed(now.tractions), len(self._joint.sections)
-        interfaces = [self._contact(now, step, place, passed[place], residuals) for place in range(len(passed))]
+        interfaces = [self._contact(now, since, step, place, residuals) for place in range(len(passed))]
         contacts = [self._whole(now, place, interfaces) for place in range(count)]
         thickness = np.array([[each.problem.thickness] for each in system.sections[:count]], dtype=float)
         moved = np.zeros((len(self._plates), 3))
@@ -100,30 +102,28 @@ class StateMaker:
         for motion, by in zip(system.given.moving, now.motion[3 * len(passed) :], strict=True):
             moved[motion.plate] += by * units * motion.at(0j)
         forces = passed[:count, :2] * scales.force * thickness
-        return JointState(self._joint, step, load, tuple(contacts), forces, moved, residuals, self._faying(now))
+        return JointState(self._joint, step, load, tuple(contacts), forces, moved, residuals, self._faying(now, since))
 
-    def _faying(self, now: Configuration) -> tuple[FayingState, ...]:
+    def _faying(self, now: Configuration, since: Since) -> tuple[FayingState, ...]:
         """The faying surfaces of clamped plates."""
         system, scales, found = self._system, self._system.scales, []
         thick = self._joint.plates[0].thickness
         for place, (force, sides) in enumerate(zip(system.rubbed(now.tractions), system.sides, strict=True)):
             lost = float(now.slip_tally.sums[1, sides].sum()) * scales.force * scales.displacement * thick
-            self._since.rubbed[place] += lost
+            since.rubbed[place] += lost
             slip = 0.0 - (NORMALS @ now.slip[sides]) * scales.displacement
-            found.append(FayingState(force * scales.force * thick, slip, float(self._since.rubbed[place])))
+            found.append(FayingState(force * scales.force * thick, slip, float(since.rubbed[place])))
         return tuple(found)
 
-    def _contact(
-        self, now: Configuration, step: int, place: int, passed: np.ndarray, residuals: dict[str, float]
-    ) -> State:
+    def _contact(self, now: Configuration, since: Since, step: int, place: int, residuals: dict[str, float]) -> State:
         """The contact of one pin in one plate."""
         system, scales = self._system, self._system.scales
         nodes, grid, problem = system.nodes.parts[place], system.nodes.grids[place], system.sections[place].problem
-        x, y, turned = now.motion[3 * place : 3 * place + 3]
+        passed, (x, y, turned) = system.passed(now.tractions)[place], now.motion[3 * place : 3 * place + 3]
         status = now.status[nodes].copy()
         if problem.frictionless:
             status = np.where(status == OPEN, OPEN, SLIP_POSITIVE).astype(np.int8)
-        first = self._since.rest[place]
+        first = since.rest[place]
         if (status != OPEN).any() and np.isnan(first).any():
             first[:] = _resting_place(system.initial_gap[nodes], grid, x, y)
         rest = np.zeros(2) if np.isnan(first).any() else first
@@ -131,7 +131,7 @@ class StateMaker:
         tally: dict[str, Any] = {**now.slip_tally.part(np.arange(nodes.start, nodes.stop)).fields(scales)}
         for name in ("slip_lowest", "slip_highest"):
             tally[name] = tally[name] - datum
-        self._since.dissipated[place] += float(grid.weights @ tally["friction_energy"]) * problem.hole_radius
+        since.dissipated[place] += float(grid.weights @ tally["friction_energy"]) * problem.hole_radius
         load = dict.fromkeys(LOADS, 0.0)
         load["Q"], load["P"] = float(passed[0]) * scales.force, -float(passed[1]) * scales.force
         load["M"] = float(passed[2]) * scales.force * self._joint.radius
@@ -140,7 +140,7 @@ class StateMaker:
             shear=now.shear[nodes] * scales.traction, gap=now.gap[nodes] * scales.displacement,
             slip=now.slip[nodes] * scales.displacement - datum, status=status, dx=float(x) * scales.displacement,
             dy=float(y) * scales.displacement, rotation=float(turned) * scales.rotation,
-            dissipation=float(self._since.dissipated[place]), work=math.nan, energy=math.nan, residuals=residuals,
+            dissipation=float(since.dissipated[place]), work=math.nan, energy=math.nan, residuals=residuals,
             problem=problem, grid=grid, **tally,
         )  # fmt: skip
 

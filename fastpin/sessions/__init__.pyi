@@ -1,1 +1,2 @@
+from .joint import JointSession as JointSession
 from .session import Session as Session

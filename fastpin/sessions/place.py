@@ -1,19 +1,22 @@
 """A place in a session, to which the session can go back: a problem, the loads so far, and the contact there.
 
-The loads of many places share their memory. :func:`changed_problem` leads to another problem.
+The loads of many places share their memory. :class:`Undoing` remembers places. :func:`changed_problem` leads to another
+problem.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import MutableSequence, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.model.checks import as_toml, whole_number
 from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
+from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
@@ -22,6 +25,9 @@ from fastpin.states.state import State
 
 ROWS = 1024
 """Loads in one block of :class:`Loads`."""
+
+PlaceT = TypeVar("PlaceT", bound=Any)
+StateT = TypeVar("StateT")
 
 
 class Loads:
@@ -91,6 +97,89 @@ class Place:
     restart: Restart | None = None
     state: State | None = None
     followed: bool = False
+
+
+class Undoing(Generic[PlaceT, StateT]):
+    """What is at a place, and remembers the places before: the base of sessions.
+
+    Parameters
+    ----------
+    here : place
+        Its ``state`` is None under no load.
+    undo : int or None
+        Number of places that are remembered; None means all.
+    """
+
+    def __init__(self, here: PlaceT, undo: int | None) -> None:
+        self._here = here
+        self._undo = deque[PlaceT](maxlen=None if undo is None else whole_number("undo", undo, 0, MAX_CORNERS))
+        self._redo: list[PlaceT] = []
+
+    @property
+    def state(self) -> StateT | None:
+        """The present state; None before the first load."""
+        state: StateT | None = self._here.state
+        return state
+
+    @property
+    def undos(self) -> int:
+        """Number of places to which :meth:`undo` can go back."""
+        return len(self._undo)
+
+    @property
+    def redos(self) -> int:
+        """Number of places to which :meth:`redo` can go forward."""
+        return len(self._redo)
+
+    def undo(self, times: int = 1) -> StateT | None:
+        """Go back to the place before the last load or change, and return its state; `times` times.
+
+        Raises
+        ------
+        InputError
+            If so many places are not remembered.
+        """
+        if whole_number("times", times, 1) > len(self._undo):
+            raise InputError("times", f"only {len(self._undo)} earlier places are remembered, not {as_toml(times)}")
+        return self._move(self._undo, self._redo, times)
+
+    def redo(self, times: int = 1) -> StateT | None:
+        """Take back so many calls of :meth:`undo`, and return the state. A new load or change forgets them.
+
+        Raises
+        ------
+        InputError
+            If there were fewer.
+        """
+        if whole_number("times", times, 1) > len(self._redo):
+            raise InputError("times", f"only {len(self._redo)} steps were undone, not {as_toml(times)}")
+        return self._move(self._redo, self._undo, times)
+
+    def _move(self, places: MutableSequence[PlaceT], left: MutableSequence[PlaceT], times: int) -> StateT | None:
+        """Go to the last of some places, `times` times, and add each place that is left to `left`."""
+        for _ in range(times):
+            left.append(self._here)
+            self._here = places.pop()
+        return self.state
+
+    def _leave_for(self, place: PlaceT) -> None:
+        """Remember the present place, and go to another one."""
+        self._undo.append(self._here)
+        self._redo.clear()
+        self._here = place
+
+    def _begin_at(self, place: PlaceT) -> None:
+        """Be at a place, and forget all others."""
+        self._here = place
+        self._undo.clear()
+        self._redo.clear()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"here": self._here, "undo": self._undo.copy(), "redo": self._redo.copy()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            setattr(self, f"_{name}", value)
 
 
 def changed_problem(problem: Problem, changes: dict[str, Any]) -> Problem:

@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Iterator, MutableSequence, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -19,7 +18,7 @@ from fastpin.elasticity.build import build_system
 from fastpin.elasticity.system import IN_PLACE, System
 from fastpin.errors import InputError
 from fastpin.model.acting import MOST_LOAD, check_loads
-from fastpin.model.checks import as_toml, choice, true_or_false, whole_number
+from fastpin.model.checks import choice, true_or_false
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import MAX_CORNERS, LoadHistory
@@ -35,7 +34,7 @@ from fastpin.sessions.growth import (
     touches_outside,
     wider_grid,
 )
-from fastpin.sessions.place import Loads, Place, changed_problem, check_nodes
+from fastpin.sessions.place import Loads, Place, Undoing, changed_problem, check_nodes
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.repeats import Repeats
@@ -62,7 +61,7 @@ NO_HISTORY = LoadHistory([{}])
 """The history of a run that gets its loads one by one."""
 
 
-class Session:
+class Session(Undoing[Place, State]):
     """A contact that is led from load to load.
 
     A session gives the states of :func:`fastpin.solve`, to the same bits: the states of ``solve(session.problem,
@@ -139,9 +138,7 @@ class Session:
         if self._expected is not None:
             check_loads(problem, self._expected)
         self._grid = grid
-        self._here = Place(problem, Loads())
-        self._undo = deque[Place](maxlen=None if undo is None else whole_number("undo", undo, 0, MAX_CORNERS))
-        self._redo: list[Place] = []
+        super().__init__(Place(problem, Loads()), undo)
         self._forget()
 
     def _forget(self) -> None:
@@ -158,11 +155,6 @@ class Session:
         return self._here.problem
 
     @property
-    def state(self) -> State | None:
-        """The present state; None before the first load."""
-        return self._here.state
-
-    @property
     def history(self) -> LoadHistory | None:
         """The loads that led to the present state; None before the first load."""
         return self._here.loads.history() if self._here.loads.count else None
@@ -171,16 +163,6 @@ class Session:
     def grid(self) -> Grid | None:
         """The present nodes; None before the first load."""
         return self._here.grid
-
-    @property
-    def undos(self) -> int:
-        """Number of places to which :meth:`undo` can go back."""
-        return len(self._undo)
-
-    @property
-    def redos(self) -> int:
-        """Number of places to which :meth:`redo` can go forward."""
-        return len(self._redo)
 
     def advance(self, loads: Corner) -> State:
         """Follow one straight step from the present loads to these, and return the state there.
@@ -273,43 +255,9 @@ class Session:
             self._leave_for(place)
         return self._here.state
 
-    def undo(self, times: int = 1) -> State | None:
-        """Go back to the place before the last load or change, and return its state; `times` times.
-
-        Raises
-        ------
-        InputError
-            If so many places are not remembered.
-        """
-        if whole_number("times", times, 1) > len(self._undo):
-            raise InputError("times", f"only {len(self._undo)} earlier places are remembered, not {as_toml(times)}")
-        return self._move(self._undo, self._redo, times)
-
-    def redo(self, times: int = 1) -> State | None:
-        """Take back so many calls of :meth:`undo`, and return the state. A new load or change forgets them.
-
-        Raises
-        ------
-        InputError
-            If there were fewer.
-        """
-        if whole_number("times", times, 1) > len(self._redo):
-            raise InputError("times", f"only {len(self._redo)} steps were undone, not {as_toml(times)}")
-        return self._move(self._redo, self._undo, times)
-
-    def _move(self, places: MutableSequence[Place], left: MutableSequence[Place], times: int) -> State | None:
-        """Go to the last of some places, `times` times, and add each place that is left to `left`."""
-        for _ in range(times):
-            left.append(self._here)
-            self._here = places.pop()
-        self._go_back()
-        return self._here.state
-
     def reset(self) -> None:
         """Go back to no load, with the present problem and nodes. The history and all other places are forgotten."""
-        self._here = replace(self._here, loads=Loads(), restart=None, state=None, followed=False)
-        self._undo.clear()
-        self._redo.clear()
+        self._begin_at(replace(self._here, loads=Loads(), restart=None, state=None, followed=False))
         self._run = None
 
     def copy(self, matrices: bool = True) -> Session:
@@ -341,14 +289,11 @@ class Session:
         return solve(self.problem, history, grid=self.grid, keep=keep, slip_sums=self._options.slip_sums)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {
-            "options": self._options, "expected": self._expected, "grid": self._grid, "here": self._here,
-            "undo": self._undo.copy(), "redo": self._redo.copy(),
-        }  # fmt: skip
+        own = {"options": self._options, "expected": self._expected, "grid": self._grid}
+        return own | super().__getstate__()
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        for name, value in state.items():
-            setattr(self, f"_{name}", value)
+        super().__setstate__(state)
         self._forget()
 
     __copy__ = copy
@@ -387,7 +332,7 @@ class Session:
             try:
                 yield
             except (SolveError, Interrupted) as ended:
-                self._go_back()
+                self._move(self._undo, self._redo, 0)
                 ended.result = self._result_before(place.loads)
                 raise
             except BaseException:
@@ -425,12 +370,12 @@ class Session:
         """Remember the present place, and go to another one."""
         if place.problem is not self._here.problem:
             self._limits = {}
-        self._undo.append(self._here)
-        self._redo.clear()
-        self._here, self._run = place, None
+        super()._leave_for(place)
+        self._run = None
 
-    def _go_back(self) -> None:
-        """Let the run be at the present place, if it can."""
+    def _move(self, places: MutableSequence[Place], left: MutableSequence[Place], times: int) -> State | None:
+        """Let the run be at the place too, if it can."""
+        super()._move(places, left, times)
         here, run = self._here, self._run
         where = None if run is None else (run.system.problem, run.grid)
         if run is not None and here.restart is not None and where == (here.problem, here.grid):
@@ -439,6 +384,7 @@ class Session:
         else:
             self._run = None
         self._limits = {}
+        return here.state
 
     def _system_at(self, place: Place) -> System:
         """The matrices of a place: the present ones, if they do."""

@@ -305,7 +305,7 @@ class JointWriter(FileWriter):
 
     def corner_reached(self, restart: JointRestart) -> None:
         """Commit after a long wait. Write a checkpoint if one is due."""
-        self._restart = replace(restart, since=restart.since.copy())
+        self._restart = restart
         self.note()
 
     def write_place(self, group: h5py.Group) -> None:

@@ -15,7 +15,7 @@ from fastpin import Grid, InputError, Material, MaterialPair, NoEquilibriumError
 from fastpin.bodies import Bushing, Ring
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, parse_joint, solve_joint
 from fastpin.joints.document import document_of, joint_from
-from fastpin.joints.solving import joint_system, load_values, plate_compliance
+from fastpin.joints.solving import JointMatrices, joint_system, load_values, plate_compliance, reference_force
 from fastpin.joints.varied import BaseJoint
 from fastpin.kernels.status import STICK
 from fastpin.model import LOADS
@@ -71,7 +71,9 @@ def test_one_pin_in_a_bush_is_that_of_solve(
 def stuck(joint: Joint, loads: dict[str, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Pressures, forces and moments, and motions of plates, if all nodes of all interfaces stick, also in tension."""
     values, plates = load_values(joint, [loads]), [plate_compliance(joint, each, 12, float) for each in joint.plates]
-    system, unit = joint_system(joint, plates, values, 48)
+    force = reference_force(joint, values)
+    system = joint_system(joint, plates, force, 48)
+    unit = JointMatrices(joint, plates, force, system).unit
     acting = np.r_[np.zeros(len(LOADS)), values[0] / unit, 0.0, 0.0]
     matrix = np.block([[system.operator.entries(), system.motion], [system.equilibrium, system.motion_rows]])
     found = np.linalg.solve(matrix, np.r_[-system.loads @ acting, system.forces @ acting])

@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 45,
     "constants of modules": 1_254,
     "hidden imports": 0,
-    "lines of code": 52_900,
+    "lines of code": 53_075,
     "lines of code of the core": 18_395,
     "files of the core": 134,
     "functions of the core": 1_970,

@@ -26,6 +26,7 @@ from fastpin import (
     published,
     reading,
     report,
+    sessions,
     studies,
 )
 from fastpin.assess.outputs import Curve
@@ -174,6 +175,10 @@ class Valid:
         jointed = fastpin.storage.record_joint(
             joints.JointFile(PAIRED, [{"a.x": 1e6}, {"a.x": 0.0}], nodes=16), "joint.h5"
         )
+        led = sessions.JointSession(PAIRED, nodes=16)
+        led.advance({"a.x": 1e6})
+        led.advance({"a.x": 1e5})
+        led.undo()
         loop = measured_loop(("ux", "Q"), 1e-5 * RUBBED, 1e5 * RUBBED)
         fitted = studies.FittedValue(0.4, 0.3, 0.5)
         identified = studies.Identified(
@@ -231,6 +236,7 @@ class Valid:
             "BushFit": _always(bushed.bush_fit()),
             "GrowthLaw": _always(law),  # the class alone has no rate
             "Session": session.copy,
+            "JointSession": led.copy,
             "Outcome": lambda: published.Outcome([published.Row("peak", "1", "0.5", 0.5)]),
         }
         self._by_target = self._targets(result) | {"worn_fatigue.cycles": _always(life), "after.cycles": _always(1)}
@@ -336,6 +342,7 @@ class Valid:
             "parse_joint.text": joints.JOINT_EXAMPLE,
             "solve_joint.corners": [{"a.x": 1e6}],
             "solve_joint.nodes": 16,
+            "JointSession.advance.loads": {"a.x": 1e6},
             "Joint.place.pin": "a",
             "Joint.place.plate": "sheet",
             "Joint.is_stress.load": "sheet.sxx",
