@@ -8,8 +8,9 @@ coherence of a pin in its plates:
     each further section    what ties the sections of a pin, see :mod:`fastpin.joints.bending`, for x and y
     rotations               one moment for all plates of a pin; equal rotations
     ring                    F + e c of its outer interface less that of the inner one = 0, and so the moment
+    a driven pin            D of its first section = the displacement that is given, in place of the first condition
     plate that moves        the work of all t (F + e c), of moments, of friction of faying surfaces and of its loads on
-                            each of its motions = 0
+                            each of its motions = 0; or the motion = the displacement that is given
 
 F is the force of the inner body on the outer one per thickness, t the thickness, and D = c + plate's displacement +
 g F - k J the displacement of the pin's section, (T29) of docs/theory.md; with a ring c + g F - k J is the sum of both
@@ -142,6 +143,11 @@ class JointLoads:
     columns : sequence of (int, str, int)
         Loads within plates: the plate, the name of its column, the place of the load.
 
+    of_pins : ndarray of int, shape (pins, 2)
+        The load that is the displacement of a pin along x or y, in place of the force; -1 for none.
+    of_plates : ndarray of int, shape (moving,)
+        The load that is the motion of a plate; -1 for none.
+
     Two more loads follow: the fit, from 0 to 1, and the springs of loose pins, which is always 1.
     """
 
@@ -149,6 +155,8 @@ class JointLoads:
     moving: Sequence[Motion]
     plates: np.ndarray
     columns: Sequence[tuple[int, str, int]]
+    of_pins: np.ndarray
+    of_plates: np.ndarray
 
 
 def sections_of_pins(sections: Sequence[PinSection], rings: Sequence[RingBetween]) -> list[list[int]]:
@@ -171,6 +179,8 @@ class _Conditions:
     equilibrium : ndarray, shape (m, 2n)
     rows, springs : ndarray, shape (m, m)
         The part of the motion, without that of the springs of loose pins; and that of the springs.
+    forces : ndarray, shape (m, loads)
+        The right sides per unit of each load.
     """
 
     def __init__(
@@ -187,6 +197,50 @@ class _Conditions:
         total = 3 * len(sections) + len(given.moving)
         self.equilibrium = np.zeros((total, 2 * nodes.size))
         self.rows, self.springs = np.zeros((total, total)), np.zeros((total, total))
+        self._user = slice(len(LOADS), len(LOADS) + given.pins.shape[2])
+        self.forces = np.zeros((total, self._user.stop + 2))
+
+    def add_pin(self, pin: int, members: list[int], ties: Coherence) -> None:
+        """Add the equilibrium of a pin, or where it is driven its displacement; and what ties its sections."""
+        sections, head, driven = self._sections, 3 * members[0], self._given.of_pins[pin]
+        self.forces[head : head + 2, self._user] = on_pin = self._given.pins[pin]
+        for axis, load in enumerate(driven):
+            if load >= 0:
+                self.add_displacement(head + axis, members[0], axis, 1.0)
+                self.forces[head + axis, self._user.start + load] = 1.0
+                continue
+            for place in members:
+                self.add_force(head + axis, place, axis, sections[place].thickness)
+        if is_smooth(sections, members):
+            self.rows[head + TURN, head + TURN] = 1.0
+        else:
+            for place in members:
+                self.add_moment(head + TURN, place, sections[place].thickness)
+        for before, place in itertools.pairwise(members):
+            self.add_displacement(3 * place + TURN, before, TURN, 1.0)
+            self.add_displacement(3 * place + TURN, place, TURN, -1.0)
+        for place, by_moved, by_forces, outside in zip(members[1:], *ties, strict=True):
+            for axis in (0, 1):
+                row = 3 * place + axis
+                reaction = outside if driven[axis] >= 0 else 0.0  # it is what all sections pass on
+                for other, moved, force in zip(members, by_moved, by_forces, strict=True):
+                    self.add_displacement(row, other, axis, moved)
+                    self.add_force(row, other, axis, (force - reaction) * sections[other].thickness)
+                self.forces[row, self._user] += outside * on_pin[axis]
+
+    def add_plate(self, number: int) -> None:
+        """Add the work on a motion of a plate, or where it is driven its displacement."""
+        row, motion = 3 * len(self._sections) + number, self._given.moving[number]
+        if (load := self._given.of_plates[number]) >= 0:
+            self.rows[row, row] = self.forces[row, self._user.start + load] = 1.0
+            return
+        for place, each in enumerate(self._sections):
+            if each.plate == motion.plate and place not in self._around:
+                x, y, turned = motion.at(each.at)
+                self.add_force(row, place, 0, each.thickness * x)
+                self.add_force(row, place, 1, each.thickness * y)
+                self.add_moment(row, place, each.thickness * turned)
+        self.forces[row, self._user] = -self._given.plates[number]
 
     def add_force(self, row: int, place: int, axis: int, factor: float) -> None:
         """Add the force at an interface, with the spring that holds its inner body while it is loose."""
@@ -251,30 +305,9 @@ def conditions_of(
     rings: Sequence[RingBetween],
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The conditions of equilibrium and coherence: of the tractions, the motion, the springs in it, and the loads."""
-    found, count = _Conditions(sections, alone, nodes, given, rings), 3 * len(sections)
-    user = slice(len(LOADS), len(LOADS) + given.pins.shape[2])
-    forces = np.zeros((len(found.rows), user.stop + 2))
-    for members, on_pin, ties in zip(sections_of_pins(sections, rings), given.pins, coherence, strict=True):
-        head = 3 * members[0]
-        forces[head : head + 2, user] = on_pin
-        for place in members:
-            for axis in (0, 1):
-                found.add_force(head + axis, place, axis, sections[place].thickness)
-        if is_smooth(sections, members):
-            found.rows[head + TURN, head + TURN] = 1.0
-        else:
-            for place in members:
-                found.add_moment(head + TURN, place, sections[place].thickness)
-        for before, place in itertools.pairwise(members):
-            found.add_displacement(3 * place + TURN, before, TURN, 1.0)
-            found.add_displacement(3 * place + TURN, place, TURN, -1.0)
-        for place, by_moved, by_forces, outside in zip(members[1:], *ties, strict=True):
-            for axis in (0, 1):
-                row = 3 * place + axis
-                for other, moved, force in zip(members, by_moved, by_forces, strict=True):
-                    found.add_displacement(row, other, axis, moved)
-                    found.add_force(row, other, axis, force * sections[other].thickness)
-                forces[row, user] += outside * on_pin[axis]
+    found = _Conditions(sections, alone, nodes, given, rings)
+    for pin, (members, ties) in enumerate(zip(sections_of_pins(sections, rings), coherence, strict=True)):
+        found.add_pin(pin, members, ties)
     for ring in rings:
         for place, sign in ((ring.outer, 1.0), (ring.inner, -1.0)):
             for axis in (0, 1):
@@ -283,13 +316,6 @@ def conditions_of(
                 found.add_moment(3 * ring.outer + TURN, place, sign * sections[place].thickness)
         if is_smooth(sections, (ring.outer, ring.inner)):
             found.rows[3 * ring.outer + TURN, 3 * ring.outer + TURN] = 1.0
-    within = {ring.inner for ring in rings}
-    for row, motion in enumerate(given.moving, start=count):
-        for place, each in enumerate(sections):
-            if each.plate == motion.plate and place not in within:
-                x, y, turned = motion.at(each.at)
-                found.add_force(row, place, 0, each.thickness * x)
-                found.add_force(row, place, 1, each.thickness * y)
-                found.add_moment(row, place, each.thickness * turned)
-        forces[row, user] = -given.plates[row - count]
-    return found.equilibrium, found.rows + found.springs, found.springs, forces
+    for number in range(len(given.moving)):
+        found.add_plate(number)
+    return found.equilibrium, found.rows + found.springs, found.springs, found.forces

@@ -35,8 +35,9 @@ def document_of(value: Any) -> Any:
         return value
     found = {one.name: document_of(getattr(value, one.name)) for one in fields(value)}
     found.pop("inside", None)  # all bushes have the plate outside
-    for name in ("bush", "gap", "bore_radius"):  # joints without them stay as they were
-        if not found.get(name, True):
+    usual: dict[str, tuple[Any, ...]] = {"bush": (None, {}), "gap": ({},), "bore_radius": (0.0,), "drive": ("force",)}
+    for name, values in usual.items():  # joints without them stay as they were
+        if name in found and found[name] in values:
             del found[name]
     return found
 

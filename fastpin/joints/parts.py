@@ -14,7 +14,7 @@ from fastpin.bodies.pins import Tube
 from fastpin.errors import InputError
 from fastpin.joints.bending import Coherence, beam, springs
 from fastpin.joints.hole import HoleInPlate
-from fastpin.joints.pins import BEAM, Faying, JointPin, part_name, whole_name
+from fastpin.joints.pins import BEAM, DRIVES, Faying, JointPin, part_name, reactions_of, whole_name
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad
 from fastpin.model import checks, unit_systems
 from fastpin.model.loads import LOADS, REMOTE
@@ -57,6 +57,9 @@ class JointPlate:
         The supports of a plate may move along x or y, all together and without turning. Then the plate has the loads
         "name.x" and "name.y": the force on its supports, N. A plate that is free has no supports: it floats between its
         pins, of which it needs two.
+    drive : {"force", "ux", "uy", "both"}
+        Displacements of the supports that are loads in place of their forces: "name.ux" and "name.uy", m, along axes
+        on which they move. The forces are reactions then.
     holes : sequence of Hole
         Holes without a pin.
     loads : sequence of PartLoad
@@ -82,6 +85,7 @@ class JointPlate:
     holes: tuple[Hole, ...] = ()
     loads: tuple[PartLoad, ...] = ()
     slices: int = 1
+    drive: str = "force"
 
     def __post_init__(self) -> None:
         checks.check_fields(self, part_name, "name")
@@ -100,6 +104,9 @@ class JointPlate:
             for key in ("supports", "moves", "holes", "loads"):
                 if getattr(self, key):
                     raise InputError(key, "has no meaning for an infinite plate; give an outline")
+        checks.check_fields(self, checks.choice, "drive", tuple(DRIVES))
+        for axis in (axis for axis in DRIVES[self.drive] if self.floats or axis not in self.moves):
+            raise InputError("drive", f"the supports of {self.name} do not move along {axis}: give moves")
         own = [*(part.name for part in self.outline), *(hole.name for hole in self.holes)]
         for name in self.supports:
             checks.known_name("supports", name, own)
@@ -129,7 +136,13 @@ class JointPlate:
         """Names of the loads that act on the plate."""
         edges = REMOTE_NAMES if self.is_infinite else tuple(sorted({load.name for load in self.loads}))
         pulled = "" if self.floats else self.moves
-        return tuple(f"{self.name}.{name}" for name in (*pulled, *edges))
+        driven = [f"u{axis}" for axis in DRIVES[self.drive]]
+        return tuple(f"{self.name}.{name}" for name in (*pulled, *driven, *edges))
+
+    @property
+    def reactions(self) -> dict[str, str]:
+        """The names of the forces that are reactions, and of the displacements in their place."""
+        return reactions_of(self.name, self.drive)
 
     @property
     def floats(self) -> bool:
@@ -216,6 +229,10 @@ class Joint:
                 raise InputError(
                     f"plate.{others[0].name}.moves", f"{words}: under a net force an infinite plate moves without limit"
                 )
+        infinite = next((plate for plate in self.plates if plate.is_infinite), None)
+        if infinite is not None and len(self.pins) > 1 and (driven := [pin for pin in self.pins if pin.reactions]):
+            words = f"the infinite plate {infinite.name} has several pins, so {driven[0].name} can't be driven"
+            raise InputError(f"pin.{driven[0].name}.drive", f"{words}: give the plate an outline")
         for pin, plate in self.sections:
             self.problem(pin, plate)
         for pin in self.pins:
@@ -333,19 +350,36 @@ class Joint:
 
     @cached_property
     def load_names(self) -> tuple[str, ...]:
-        """Names of all loads: forces on pins and on plates that move, N, and stresses of plates, Pa."""
-        of_pins = tuple(f"{pin.name}.{axis}" for pin in self.pins for axis in "xy")
+        """Names of all loads and reactions: forces on pins and on plates that move, N, displacements in place of some
+        of them, m, and stresses of plates, Pa.
+        """
+        of_pins = tuple(
+            f"{pin.name}.{name}"
+            for pin in self.pins
+            for name in ("x", "y", *(f"u{axis}" for axis in DRIVES[pin.drive]))
+        )
         return sum((plate.load_names for plate in self.plates), ()) + of_pins
+
+    @cached_property
+    def reactions(self) -> dict[str, str]:
+        """The names of the forces that are reactions, and of the displacements in their place."""
+        of = (*(plate.reactions for plate in self.plates), *(pin.reactions for pin in self.pins))
+        return {name: given for each in of for name, given in each.items()}
+
+    @cached_property
+    def given_names(self) -> tuple[str, ...]:
+        """Names of the loads that a history gives: all but the reactions."""
+        return tuple(name for name in self.load_names if name not in self.reactions)
 
     def has_outline(self, plate: str) -> bool:
         """Whether a plate has an outline and no slices, so that its stress is known everywhere."""
         known = [each.name for each in self.plates if not each.is_infinite and each.slices == 1]
         return plate in known
 
-    def is_stress(self, load: str) -> bool:
-        """Whether a load is a stress, Pa. The others are forces, N."""
+    def load_kind(self, load: str) -> str:
+        """The kind of a load: "traction", Pa, "displacement", m, or "force", N. An unknown load raises InputError."""
         checks.known_name("load", load, self.load_names)
-        return load.rsplit(".", 1)[1] in REMOTE_NAMES
+        return kind_of_load(load)
 
     def problem(self, pin: JointPin, plate: JointPlate) -> Problem:
         """The contact of a pin in one plate, with its bush there, as if that plate were infinite."""
@@ -370,3 +404,9 @@ class Joint:
             )  # fmt: skip
         except InputError as error:
             raise InputError(f"pin.{pin.name}.{error.field}", f"in {plate.name}: {error.reason}") from None
+
+
+def kind_of_load(name: str) -> str:
+    """The kind of a load of a joint by its name, see :meth:`Joint.load_kind`."""
+    what = name.rpartition(".")[2]
+    return "traction" if what in REMOTE_NAMES else "displacement" if what in ("ux", "uy") else "force"

@@ -17,6 +17,9 @@ from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
 from fastpin.model.profile import NO_GAP, InitialGap, ProfileLike
 from fastpin.model.read_only import ReadOnlyDict
 
+DRIVES = {"force": "", "ux": "x", "uy": "y", "both": "xy"}
+"""The axes along which a displacement is given in place of a force, by the word."""
+
 BEAM = "beam"
 """The flexibility of a pin that bends as a beam."""
 
@@ -93,6 +96,9 @@ class JointPin:
     bore_radius : float
         Radius of the bore of a hollow pin, m; 0 of a solid one. Its forces enter as body forces, as those of a solid
         pin, and the bore is free.
+    drive : {"force", "ux", "uy", "both"}
+        Displacements of the pin that are loads in place of forces on it: "name.ux" along x, "name.uy" along y, m. It is
+        that of the pin in its first plate, (T29), from the middle of its undeformed hole. The force is a reaction then.
     heads : {"free", "held"} or float, optional
         Of a beam: its ends turn freely, as they do unless it is given; or do not turn, or by the angle of a moment:
         N m/rad. It is kept as a number, 0 or infinite.
@@ -116,6 +122,7 @@ class JointPin:
     bush: Bushing | Mapping[str, Bushing] | None = None
     gap: InitialGap | ProfileLike | Mapping[str, InitialGap | ProfileLike] | None = None
     bore_radius: float = 0.0
+    drive: str = "force"
 
     def __post_init__(self) -> None:
         checks.check_fields(self, part_name, "name")
@@ -148,6 +155,7 @@ class JointPin:
             checks.set_fields(self, bush=ReadOnlyDict(self.bush))
         elif self.bush is not None:
             _check_bush("bush", self.bush)
+        checks.check_fields(self, checks.choice, "drive", tuple(DRIVES))
         self._check_gap()
         for name in ("clearance", "friction"):
             value = getattr(self, name)
@@ -172,6 +180,11 @@ class JointPin:
             checks.known_name("gap", plate, self.plates)
         found = {plate: InitialGap.of(each) for plate, each in given.items()}
         checks.set_fields(self, gap=ReadOnlyDict({plate: gap for plate, gap in found.items() if gap}))
+
+    @property
+    def reactions(self) -> dict[str, str]:
+        """The names of the forces that are reactions, and of the displacements in their place."""
+        return reactions_of(self.name, self.drive)
 
     def gap_in(self, plate: str) -> InitialGap:
         """The initial gap in a plate, or in a slice."""
@@ -277,6 +290,11 @@ def _heads(field_: str, value: object) -> float:
         return checks.not_negative(field_, value)
     except InputError as error:
         raise InputError(field_, f'{error.reason}; or "free" or "held"') from None
+
+
+def reactions_of(name: str, drive: str) -> dict[str, str]:
+    """The names of forces on a part that are reactions, and of the displacements in their place, by its drive."""
+    return {f"{name}.{axis}": f"{name}.u{axis}" for axis in DRIVES[drive]}
 
 
 def part_name(field_: str, value: object) -> str:

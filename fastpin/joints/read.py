@@ -20,10 +20,10 @@ from fastpin.casefile.materials import read_material
 from fastpin.casefile.profiles import GAP_KEYS, read_gap
 from fastpin.casefile.toml_text import CaseText, Inside, Section, parse_text, read_text
 from fastpin.errors import InputError
-from fastpin.joints.parts import REMOTE_NAMES, Joint, JointPlate
+from fastpin.joints.parts import Joint, JointPlate, kind_of_load
 from fastpin.joints.pins import Clamp, JointPin, tate_rosenfeld
 from fastpin.joints.result import SectionCrack, check_crack, check_fatigue
-from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
+from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values, reaction_words
 from fastpin.lugs.outline import Part, rectangle
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import BESIDE
@@ -48,7 +48,7 @@ JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8
 
 JOINT_KEYS: dict[str, tuple[str, ...]] = {
     "joint": ("plane", "nodes", "harmonics", "repeat"),
-    "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves", "slices"),
+    "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves", "drive", "slices"),
     "pin": (
         "name",
         "at",
@@ -62,6 +62,7 @@ JOINT_KEYS: dict[str, tuple[str, ...]] = {
         "heads",
         "bush",
         "gap",
+        "drive",
         "clamp",
     ),
     "load": (),
@@ -155,8 +156,7 @@ def parse_joint(text: str, name: str = "joint file", folder: str | Path = ".") -
 def kinds_in(source: CaseText) -> dict[str, Any]:
     """The kinds of the keys of a joint file, see :mod:`fastpin.model.keys`."""
     names = [name for block in source.blocks("load") for name in block.table]
-    stresses = [name for name in names if name.rpartition(".")[2] in REMOTE_NAMES]
-    return _KINDS | {"load": {ANY: "force", **dict.fromkeys(stresses, "traction")}}
+    return _KINDS | {"load": {name: kind_of_load(name) for name in names}}
 
 
 def joint_file_in(source: CaseText, folder: Path) -> JointFile | None:
@@ -187,8 +187,10 @@ def joint_file_in(source: CaseText, folder: Path) -> JointFile | None:
         return None
     corners = []
     for block in loads:
-        block.check_keys(joint.load_names, " in [[load]]", f"; the loads are {', '.join(joint.load_names)}")
-        given = {name: block.number(name) for name in joint.load_names if name in block}
+        for name in (name for name in joint.reactions if name in block):
+            block.report(f"{name} {reaction_words(joint, name)}", name)
+        block.check_keys(joint.load_names, " in [[load]]", f"; the loads are {', '.join(joint.given_names)}")
+        given = {name: block.number(name) for name in joint.given_names if name in block}
         corners.append({name: value for name, value in given.items() if value is not None})
     if len(corners) * times > MOST_CORNERS:
         source.report(f"the history has {len(corners) * times:,} corners, more than {MOST_CORNERS:,}", "load")
@@ -230,8 +232,7 @@ def _plate(source: CaseText, block: Section) -> JointPlate | None:
         return None
     outline = _outline(block)
     values = {"name": block.value("name"), "thickness": block.value("thickness"), "moves": block.value("moves") or ""}
-    if "slices" in block:
-        values["slices"] = block.value("slices")
+    values |= {key: block.value(key) for key in ("slices", "drive") if key in block}
     if material is None or outline is None or values["name"] is None or values["thickness"] is None:
         return None
     return _made(block, JointPlate, **values, material=material, outline=outline, supports=supports)
@@ -305,7 +306,7 @@ def _pins(source: CaseText, block: Section, plates: list[JointPlate | None], fol
             return [None]
     if "gap" in block:
         common["gap"] = _gaps(source, block, through, 0.5 * diameter, folder)
-    for key in (key for key in ("clearance", "friction", "heads") if key in block):
+    for key in (key for key in ("clearance", "friction", "heads", "drive") if key in block):
         common[key] = block.value(key)
     return [_made(block, JointPin, name=name, at=at, **common) for name, at in zip(names, places, strict=True)]
 

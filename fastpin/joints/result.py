@@ -119,7 +119,7 @@ class JointState:
     step : int
         Number of the corner, from 0.
     load : dict of str to float
-        Forces, N, and stresses, Pa, by the names of ``joint.load_names``.
+        Forces, N, stresses, Pa, and displacements, m, by the names of ``joint.load_names``; the reactions, too.
     contacts : tuple of State
         The contact of each pin in each of its plates, in the order of ``joint.sections``. That of its bush in the plate
         is the ``seat``. Their loads P, Q and M are what the pin passes on to this plate. Slip counts from the place
@@ -312,7 +312,7 @@ class JointResult(Sequence[JointState]):
     @property
     def _loads(self) -> np.ndarray:
         """Loads at the states, shape (states, loads)."""
-        return np.array([list(state.load.values()) for state in self.states.bare])
+        return np.array([[state.load[name] for name in self.joint.given_names] for state in self.states.bare])
 
     @property
     def last_cycle(self) -> tuple[JointState, ...]:

@@ -70,9 +70,9 @@ def solve_joint(
     ----------
     joint : Joint
     corners : sequence of mappings
-        Loads at the corners by the names of ``joint.load_names``: forces in N, stresses in Pa. A load that is left out
-        keeps its value. Between corners the loads are linear. A load below 1e-12 of its largest size is rounding, as at
-        a zero of a sine: it is taken as zero.
+        Loads at the corners by the names of ``joint.given_names``: forces in N, stresses in Pa, displacements in m. A
+        load that is left out keeps its value. Between corners the loads are linear. A load below 1e-12 of its largest
+        size is rounding, as at a zero of a sine: it is taken as zero.
     nodes : int
         Nodes of each contact, all round.
     harmonics : int, optional
@@ -264,8 +264,7 @@ class JointMatrices:
     @property
     def unit(self) -> np.ndarray:
         """The unit of each load, SI, shape (loads,), in the order of ``joint.load_names``."""
-        joint, stresses = self.joint, [self.joint.is_stress(name) for name in self.joint.load_names]
-        return np.where(stresses, self.force / joint.radius, self.force * joint.plates[0].thickness)
+        return self.force * load_units(self.joint)
 
 
 class JointRun:
@@ -348,17 +347,17 @@ def load_values(joint: Joint, corners: Sequence[Mapping[str, float]]) -> np.ndar
     InputError
         If there is no corner, a name is unknown, or a value is no finite number.
     """
-    names, given = joint.load_names, items("corners", corners, "a list of corners")
+    given = items("corners", corners, "a list of corners")
     if not given:
         raise InputError("corners", "must have at least one corner")
-    values = np.zeros((len(given), len(names)))
+    values = np.zeros((len(given), len(joint.load_names)))
     for place, corner in enumerate(given):
-        values[place] = next_loads(names, corner, place, values[place - 1])
+        values[place] = next_loads(joint, corner, place, values[place - 1])
     values[np.abs(values) <= ROUNDED * np.abs(values).max(axis=0)] = 0.0
     return values
 
 
-def next_loads(names: Sequence[str], corner: Any, place: int, before: np.ndarray) -> np.ndarray:
+def next_loads(joint: Joint, corner: Any, place: int, before: np.ndarray) -> np.ndarray:
     """The loads at the corner with the number `place`, from 0, after those `before` (loads,), SI.
 
     Raises
@@ -370,9 +369,16 @@ def next_loads(names: Sequence[str], corner: Any, place: int, before: np.ndarray
         raise InputError("corners", f"corner {place + 1} must map loads to numbers, not {as_toml(corner)}")
     found = before.copy()
     for name, value in corner.items():
-        known_name(f"corner {place + 1}", name, names)
-        found[names.index(name)] = number(name, value)
+        if name in joint.reactions:
+            raise InputError(f"corner {place + 1}", f"{name} {reaction_words(joint, name)}")
+        known_name(f"corner {place + 1}", name, joint.given_names)
+        found[joint.load_names.index(name)] = number(name, value)
     return found
+
+
+def reaction_words(joint: Joint, name: str) -> str:
+    """Why a load can't be given: it is a reaction."""
+    return f"is the reaction to {joint.reactions[name]}: drive gives the displacement in its place"
 
 
 def plate_compliance(
@@ -438,6 +444,13 @@ def _interfaces(joint: Joint, nodes: int) -> tuple[list[PinSection], list[RingBe
     return sections + around, rings, grids
 
 
+def load_units(joint: Joint) -> np.ndarray:
+    """The unit of each load per N/m of the reference force, SI, shape (loads,)."""
+    beta = joint.problem(*joint.sections[0]).surfaces.beta_star
+    units = {"traction": 1.0 / joint.radius, "force": joint.plates[0].thickness, "displacement": beta}
+    return np.array([units[joint.load_kind(name)] for name in joint.load_names])
+
+
 def reference_force(joint: Joint, values: np.ndarray) -> float:
     """The reference force of a joint under loads (corners, loads), N/m: a power of two near the largest one.
 
@@ -445,37 +458,46 @@ def reference_force(joint: Joint, values: np.ndarray) -> float:
     """
     beta = joint.problem(*joint.sections[0]).surfaces.beta_star
     clearances = [each.clearance for section in joint.sections for each in joint.problem(*section).interfaces]
-    stresses = np.array([joint.is_stress(name) for name in joint.load_names])
-    sizes = np.abs(values).max(axis=0) * np.where(stresses, joint.radius, 1.0 / joint.plates[0].thickness)
+    sizes = np.abs(values).max(axis=0) / load_units(joint)
     return 2.0 ** math.ceil(math.log2(float(sizes.max()) or float(np.abs(clearances).max()) / beta or 1.0))
+
+
+def _given_loads(joint: Joint, plates: list[HolesCompliance]) -> JointLoads:
+    """What the loads of a joint do."""
+    names, thick, radius = joint.load_names, joint.plates[0].thickness, joint.radius
+    places = {plate.name: k for k, plate in enumerate(joint.plates)}
+    pins = {pin.name: k for k, pin in enumerate(joint.pins)}
+    moving = [Motion(places[plate.name], way) for plate in joint.plates for way in MOVES[plate.moves]]
+    on_pins, on_plates = np.zeros((len(pins), 2, len(names))), np.zeros((len(moving), len(names)))
+    of_pins, of_plates = np.full((len(pins), 2), -1), np.full(len(moving), -1)
+    columns = []
+    for place, name in enumerate(names):
+        (part, what), kind = name.rsplit(".", 1), joint.load_kind(name)
+        axis = "xy".find(what[-1])
+        if kind == "traction":
+            columns.append((places[part], what, place))
+            for row, motion in enumerate(moving):
+                if motion.plate == places[part] and what in plates[motion.plate].resultants:
+                    plate = joint.plates[motion.plate]
+                    share, size = plate.thickness / thick, joint.radius_in(plate) / radius
+                    resultants = plates[motion.plate].resultants[what] * [size, size, size * size]
+                    on_plates[row, place] = share * (motion.at(0j) @ resultants)
+        elif part in pins and kind == "displacement":
+            of_pins[pins[part], axis] = place
+        elif part in pins:
+            on_pins[pins[part], axis, place] = name not in joint.reactions
+        elif kind == "displacement":
+            of_plates[moving.index(Motion(places[part], (1.0, 1j)[axis]))] = place
+        else:
+            on_plates[moving.index(Motion(places[part], (1.0, 1j)[axis])), place] = name not in joint.reactions
+    return JointLoads(on_pins, moving, on_plates, columns, of_pins, of_plates)
 
 
 def joint_system(joint: Joint, plates: list[HolesCompliance], force: float, nodes: int) -> PinsSystem:
     """The system of a joint with a reference force, N/m."""
-    names, thick, radius = joint.load_names, joint.plates[0].thickness, joint.radius
-    radii = [joint.radius_in(plate) for plate in joint.plates]
-    places = {plate.name: k for k, plate in enumerate(joint.plates)}
-    pins = {pin.name: k for k, pin in enumerate(joint.pins)}
-    beta = joint.problem(*joint.sections[0]).surfaces.beta_star
+    thick, beta = joint.plates[0].thickness, joint.problem(*joint.sections[0]).surfaces.beta_star
     sections, rings, grids = _interfaces(joint, nodes)
     clearances = np.array([each.problem.clearance for each in sections])
-    moving = [Motion(places[plate.name], way) for plate in joint.plates for way in MOVES[plate.moves]]
-    on_pins, on_plates = np.zeros((len(pins), 2, len(names))), np.zeros((len(moving), len(names)))
-    columns = []
-    for place, name in enumerate(names):
-        part, what = name.rsplit(".", 1)
-        if joint.is_stress(name):
-            columns.append((places[part], what, place))
-            for row, motion in enumerate(moving):
-                if motion.plate == places[part] and what in plates[motion.plate].resultants:
-                    share, size = joint.plates[motion.plate].thickness / thick, radii[motion.plate] / radius
-                    resultants = plates[motion.plate].resultants[what] * [size, size, size * size]
-                    on_plates[row, place] = share * (motion.at(0j) @ resultants)
-        elif part in pins:
-            on_pins[pins[part], "xy".index(what), place] = 1.0
-        else:
-            on_plates[moving.index(Motion(places[part], 1.0 + 0j if what == "x" else 1j)), place] = 1.0
-    given = JointLoads(on_pins, moving, on_plates, columns)
     faying, outer = [], {ring.inner: ring.outer for ring in rings}
     for pin_name, clamp, *pair in joint.faying:
         ends = [joint.place(pin_name, plate) for plate in pair]
@@ -484,4 +506,4 @@ def joint_system(joint: Joint, plates: list[HolesCompliance], force: float, node
         limit, soft = clamp.limit / (force * thick), clamp.flexibility * thick / beta
         faying.append(FayingSurface((one, other), limit, soft, float(play)))
     coherence = [joint.coherence(pin).scaled(thick / beta) for pin in joint.pins]
-    return build(sections, plates, given, grids, force, coherence, faying, rings)
+    return build(sections, plates, _given_loads(joint, plates), grids, force, coherence, faying, rings)

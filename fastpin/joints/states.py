@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.bodies.compliance import COLUMNS
+from fastpin.elasticity.interfaces import TURN
 from fastpin.errors import InputError
 from fastpin.joints.conditions import CENTRING, PinSection
 from fastpin.joints.faying import NORMALS, rim_basis
@@ -102,7 +103,18 @@ class StateMaker:
         for motion, by in zip(system.given.moving, now.motion[3 * len(passed) :], strict=True):
             moved[motion.plate] += by * units * motion.at(0j)
         forces = passed[:count, :2] * scales.force * thickness
+        load = load | self._reactions(now)
         return JointState(self._joint, step, load, tuple(contacts), forces, moved, residuals, self._faying(now, since))
+
+    def _reactions(self, now: Configuration) -> dict[str, float]:
+        """The forces where displacements are given, N, by their names."""
+        system, found = self._system, {}
+        names, unit = self._joint.load_names, system.scales.force * self._joint.plates[0].thickness
+        of = {given: name for name, given in self._joint.reactions.items()}
+        for row, (load, left) in enumerate(zip(system.driven, left_on_bodies(system, now), strict=True)):
+            if load >= 0:
+                found[of[names[load]]] = float(left if row < 3 * len(system.sections) else -left) * unit
+        return found
 
     def _faying(self, now: Configuration, since: Since) -> tuple[FayingState, ...]:
         """The faying surfaces of clamped plates."""
@@ -213,26 +225,38 @@ def residuals_of(system: PinsSystem, now: Configuration) -> dict[str, float]:
 def unbalanced(system: PinsSystem, now: Configuration) -> float:
     """The largest force or moment that is left on a pin, a ring or a plate, relative to what contacts and loads carry.
 
-    It is recomputed from the tractions and the springs of loose pins, without the conditions of the solver.
+    It is recomputed from the tractions and the springs of loose pins, without the conditions of the solver. Where a
+    displacement is given, a reaction is left.
+    """
+    left = np.abs(left_on_bodies(system, now)[system.driven < 0])
+    rubbed = np.abs(system.rubbed(now.tractions)).ravel()
+    size = float(max(*(np.abs(system.resultants) @ np.abs(now.tractions)), *rubbed))
+    return float(left.max(initial=0.0)) / size if size else 0.0
+
+
+def left_on_bodies(system: PinsSystem, now: Configuration) -> np.ndarray:
+    """What contacts, friction, springs and loads leave on each pin, ring and plate that moves, shape (m,).
+
+    It stands in the places of their conditions. A pin passes on more than acts on it where it is positive.
     """
     load, count, rubbed = now.load[len(LOADS) : -2], len(system.sections), system.rubbed(now.tractions)
     passed, motion = system.passed(now.tractions), (now.motion - now.rest)[: 3 * count].reshape(count, 3)
     pushed = np.array([[each.thickness] for each in system.sections]) * (passed + CENTRING * motion)
-    left = []
+    left = np.zeros(system.motions)
     for pin, members in enumerate(system.pins):
-        total = pushed[members].sum(axis=0)
-        total[:2] -= system.given.pins[pin] @ load
-        left += [*total[:2], 0.0 if system.is_smooth(pin) else total[2]]
+        head = 3 * members[0]
+        left[head : head + 3] = pushed[members].sum(axis=0)
+        left[head : head + 2] -= system.given.pins[pin] @ load
+        left[head + TURN] *= not system.is_smooth(pin)
     for ring in system.rings:
         is_smooth = all(system.sections[place].problem.frictionless for place in (ring.inner, ring.outer))
-        total = pushed[ring.outer] - pushed[ring.inner]
-        left += [*total[:2], 0.0 if is_smooth else total[2]]
+        left[3 * ring.outer : 3 * ring.outer + 3] = pushed[ring.outer] - pushed[ring.inner]
+        left[3 * ring.outer + TURN] *= not is_smooth
     within = {ring.inner for ring in system.rings}
-    for motion, force in zip(system.given.moving, system.given.plates @ load, strict=True):
+    for row, (motion, force) in enumerate(zip(system.given.moving, system.given.plates @ load, strict=True), 3 * count):
         of = [each for place, each in enumerate(zip(system.sections, pushed, strict=True)) if place not in within]
-        left.append(float(sum(push @ motion.at(each.at) for each, push in of if each.plate == motion.plate) + force))
+        left[row] = sum(push @ motion.at(each.at) for each, push in of if each.plate == motion.plate) + force
         for surface, friction in zip(system.faying, rubbed, strict=True):
             for each, sign in ((system.sections[at], sign) for at, sign in surface.signs):
-                left[-1] += sign * float(friction @ motion.at(each.at)[:2]) if each.plate == motion.plate else 0.0
-    size = float(max(*(np.abs(system.resultants) @ np.abs(now.tractions)), *np.abs(rubbed).ravel()))
-    return float(np.abs(left).max()) / size if size else 0.0
+                left[row] += sign * float(friction @ motion.at(each.at)[:2]) if each.plate == motion.plate else 0.0
+    return left

@@ -126,6 +126,15 @@ class PinsSystem(System):
         return tuple(slice(parts[of[0]].start, parts[of[-1]].stop) for of in bodies)
 
     @cached_property
+    def driven(self) -> np.ndarray:
+        """The load that a condition prescribes as a displacement, int, shape (m,); -1 if it is no such condition."""
+        count, given = 3 * len(self.sections), self.given
+        found = np.r_[np.full(count, -1), given.of_plates]
+        for members, loads in zip(self.pins, given.of_pins, strict=True):
+            found[3 * members[0] : 3 * members[0] + 2] = loads
+        return found
+
+    @cached_property
     def of_pins(self) -> np.ndarray:
         """Whether a condition is the equilibrium of a pin or a ring, bool, shape (m,).
 
@@ -134,7 +143,7 @@ class PinsSystem(System):
         found = np.zeros(self.motions, dtype=bool)
         for place in (*(members[0] for members in self.pins), *(ring.outer for ring in self.rings)):
             found[3 * place : 3 * place + 3] = True
-        return found
+        return found & (self.driven < 0)
 
     def columns(self, *given: Any) -> PortColumns | None:
         return None if self.ports is None else PortColumns(self, self.ports, *given)
@@ -184,7 +193,7 @@ def build(
     """
     nodes = Nodes(tuple(grids), SIDES * len(faying))
     alone = [System.build(each.problem, grid, force) for each, grid in zip(sections, grids, strict=True)]
-    scales, size = alone[0].scales, nodes.size
+    scales, size, behind = alone[0].scales, nodes.size, nodes.size + nodes.parts[-1].stop
     stretch = [system.scales.displacement / scales.displacement for system in alone]
     matrix = np.zeros((2 * size, 2 * size), order="F")
     motion = np.zeros((2 * size, 3 * len(sections) + len(given.moving)))
@@ -205,7 +214,7 @@ def build(
     rims += _faying_rims(faying, sections, plates, given, nodes, matrix, motion, loads)
     has_ports = not faying and not rings and all(each.slices == 1 for each in sections)
     is_stored = not has_ports or size <= LARGEST_DENSE
-    equilibrium[:, size + nodes.parts[-1].stop :] = motion[size + nodes.parts[-1].stop :].T  # work on moving plates
+    equilibrium[:, behind:] = np.where(equilibrium.any(axis=1), motion[behind:], 0.0).T  # work on plates, unless driven
     for rim in rims:
         unit = rim[0].radius * force / (rim[0].problem.pair.plate.shear_modulus * scales.displacement)
         _add_plate(plates[rim[0].plate], rim, rims if is_stored else [rim], given, unit, matrix, loads)

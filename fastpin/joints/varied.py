@@ -16,7 +16,7 @@ from fastpin.casefile.materials import make_room
 from fastpin.casefile.toml_text import CaseText, KeyPath, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.joints.document import document_of
-from fastpin.joints.parts import REMOTE_NAMES
+from fastpin.joints.parts import kind_of_load
 from fastpin.joints.read import JOINT_KEYS, JointFile, joint_file_in, kinds_in
 from fastpin.joints.solving import load_values
 from fastpin.model.checks import number
@@ -98,7 +98,7 @@ class BaseJoint:
     def fault(self, names: tuple[str, ...]) -> str | None:
         """Return the fault of a field's name, or None."""
         section, *rest = names
-        loads = None if self.file is None else self.file.joint.load_names
+        loads = None if self.file is None else self.file.joint.given_names
         if section == "loads":
             load = ".".join(rest)
             fault = f"is no factor; loads multiplies all loads, and loads.{loads[0] if loads else 'NAME.x'} one of them"
@@ -274,7 +274,7 @@ class BaseJoint:
         """Return the kind of a field; empty if it has no unit."""
         section, _, *rest = field.split(".")
         if section == "load":
-            return "traction" if rest[-1] in REMOTE_NAMES else "force"
+            return kind_of_load(rest[-1])
         kinds: Any = kinds_in(CaseText("")).get(section, {})
         for key in rest:
             kinds = kinds.get(key, kinds.get(ANY, "")) if isinstance(kinds, Mapping) else ""

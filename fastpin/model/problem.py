@@ -245,9 +245,8 @@ class Problem:
     def _check_drive(self, radius: float) -> None:
         """Check the drive and the radius of the gauge circle. `radius` is the radius of the hole."""
         if self.drive != "force" and self.plate_body.contacts(self.pair, radius):
-            raise InputError(
-                "drive", 'must be "force" in a bush that slips, or in a lug of any outline: its pin can\'t be driven'
-            )
+            words = 'must be "force" in a bush that slips, or in a lug of any outline; a joint of one pin can be driven'
+            raise InputError("drive", words)
         if self.gauge_radius is not None:
             gauge = number("gauge_radius", self.gauge_radius)
             if self.drive == "force":

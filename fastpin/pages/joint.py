@@ -97,7 +97,7 @@ class JointSource:
 
     @classmethod
     def _of_result(cls, result: JointResult, file: str | Path | None) -> JointSource:
-        corners = [dict(state.load) for state in result.states.bare]
+        corners = [{name: state.load[name] for name in result.joint.given_names} for state in result.states.bare]
         case, text = JointFile(result.joint, corners, nodes=result.nodes), ""
         if file is not None:
             case, text = _same_file(case._replace(harmonics=None), file)

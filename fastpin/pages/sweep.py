@@ -206,7 +206,7 @@ def _first_case(page: Parts) -> PageSection:
         names, points = [name for name in case.joint.load_names if any(name in at for at in case.corners)], case.corners
         loads = [(name, "", ["" if name not in at else brief(at[name]) for at in points]) for name in names]
         numbers = ("load point", "", [str(place) for place in range(1, len(points) + 1)])
-        caption = "Loads, N and Pa; one without a number keeps its value"
+        caption = "Loads in SI units; one without a number keeps its value"
         return PageSection("case", "The first joint", [Text(words), Table(caption, [numbers, *loads])])
     columns, hidden = corner_columns(case.problem, case.history)
     note = f" ({hidden:,} corners not shown here)" if hidden else ""

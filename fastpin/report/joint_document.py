@@ -43,8 +43,7 @@ class JointContact(NamedTuple):
 def _loads(state: JointState) -> dict[str, float]:
     """Loads in printed units."""
     unit, joint = joint_units(state.joint), state.joint
-    kinds = {name: "traction" if joint.is_stress(name) else "force" for name in state.load}
-    return {name: unit[kinds[name]].factor * value for name, value in state.load.items()}
+    return {name: unit[joint.load_kind(name)].factor * value for name, value in state.load.items()}
 
 
 def _moved(state: JointState) -> dict[str, list[float]]:

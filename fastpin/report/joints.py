@@ -160,7 +160,7 @@ def forces_columns(result: JointResult) -> list[Column]:
     for name in joint.load_names:
         values = [state.load[name] for state in states]
         if any(values):
-            columns.append(_column(name, values, unit["traction" if joint.is_stress(name) else "force"]))
+            columns.append(_column(name, values, unit[joint.load_kind(name)]))
     for place, plate in enumerate(joint.plates):
         for k, axis in enumerate("xy"):
             values = [float(moved_by(state, place)[k]) for state in states]

@@ -133,8 +133,11 @@ class JointSession(Undoing[JointPlace, JointState]):
     @property
     def history(self) -> list[dict[str, float]] | None:
         """The loads that led to the present state, as corners; None before the first load."""
-        names, loads = self.joint.load_names, self._here.loads
-        return [dict(zip(names, row, strict=True)) for row in loads.rows().tolist()] if loads.count else None
+        joint, loads = self.joint, self._here.loads
+        if not loads.count:
+            return None
+        every = (dict(zip(joint.load_names, row, strict=True)) for row in loads.rows().tolist())
+        return [{name: load[name] for name in joint.given_names} for load in every]
 
     def advance(self, loads: Mapping[str, float]) -> JointState:
         """Follow one straight step from the present loads to these, and return the state there.
@@ -142,8 +145,8 @@ class JointSession(Undoing[JointPlace, JointState]):
         Parameters
         ----------
         loads : mapping
-            Loads by the names of ``joint.load_names``: forces in N, stresses in Pa. A load that is left out keeps its
-            value.
+            Loads by the names of ``joint.given_names``, see :func:`fastpin.joints.solve_joint`. One that is left out
+            keeps its value.
 
         Returns
         -------
@@ -164,7 +167,7 @@ class JointSession(Undoing[JointPlace, JointState]):
         After an error the session is at the state before. The ``result`` of the last two rows holds this state.
         """
         here = self._here
-        given = next_loads(self.joint.load_names, loads, 0, here.values)
+        given = next_loads(self.joint, loads, 0, here.values)
         largest = np.maximum(here.largest, np.abs(given))
         given[np.abs(given) <= ROUNDED * largest] = 0.0
         force = here.force or reference_force(self.joint, given[None])

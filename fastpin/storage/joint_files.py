@@ -228,7 +228,8 @@ def case_of(stored: StoredResult) -> JointFile:
 def _case_of(file: hdf5.Group, task: JointTask) -> JointFile:
     """Read title and questions beside what is followed."""
     stored = file["solver"].attrs
-    corners = [dict(zip(task.joint.load_names, row, strict=True)) for row in task.values.tolist()]
+    every = (dict(zip(task.joint.load_names, row, strict=True)) for row in task.values.tolist())
+    corners = [{name: load[name] for name in task.joint.given_names} for load in every]
     crack = read_text("crack", text_of(stored.get("crack", "")))
     pin, plate = (text_of(name) for name in stored["crack_at"]) if crack is not None else ("", "")
     followed = None if crack is None else SectionCrack(pin, plate, crack)
@@ -362,7 +363,8 @@ def _write_head(
     text = json.dumps(document_of(joint), default=float).encode()
     file["joint/document"] = np.frombuffer(text, dtype=np.int8)
     file["history/corners"] = task.values
-    file["history/corners"].attrs.update(columns=names, unit=["Pa" if joint.is_stress(name) else "N" for name in names])
+    units = {"traction": "Pa", "force": "N", "displacement": "m"}
+    file["history/corners"].attrs.update(columns=names, unit=[units[joint.load_kind(name)] for name in names])
     solver = file.create_group("solver")
     given = {"nodes": task.nodes, "harmonics": task.harmonics, **attributes}
     solver.attrs.update({name: value for name, value in given.items() if value is not None})

@@ -50,6 +50,7 @@ def test_one_pin_is_that_of_solve(clearance: float, friction: float, within: flo
             np.testing.assert_allclose(getattr(found, name), getattr(one, name), atol=within * FORCE)
 
 
+@pytest.mark.gate
 def test_a_gap_that_is_the_same_all_round_is_a_clearance() -> None:
     """In one plate of two, of pins that are loose there and gripped in the other plate."""
     fits = {"sheet": 0.05 * UNIT, "cover": -0.1 * UNIT}

@@ -38,7 +38,7 @@ def random_joint(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]
         pins.append(JointPin(f"p{k}", at, material, 1.0, through, fits, friction, soft))
     joint = Joint((SHEET, COVER) if covered else (SHEET,), tuple(pins))
     names = [name for name in joint.load_names if rng.random() < 0.6]
-    sizes = {name: FORCE * (0.2 if joint.is_stress(name) else 1.0) for name in names}
+    sizes = {name: FORCE * (0.2 if joint.load_kind(name) == "traction" else 1.0) for name in names}
     corners = [{name: float(rng.uniform(-1.0, 1.0)) * size for name, size in sizes.items()} for _ in range(3)]
     clamps = [Clamp(float(rng.choice([0.5, 2.0, 8.0])) * FORCE, float(rng.choice([0.0, 0.1, 0.5]))) for _ in pins]
     if rng.random() < 0.5:

@@ -345,7 +345,7 @@ class Valid:
             "JointSession.advance.loads": {"a.x": 1e6},
             "Joint.place.pin": "a",
             "Joint.place.plate": "sheet",
-            "Joint.is_stress.load": "sheet.sxx",
+            "Joint.load_kind.load": "sheet.sxx",
             "JointPin.value_in.name": "friction",
             "JointPin.value_in.plate": "sheet",
             "JointPin.gap_in.plate": "sheet",
