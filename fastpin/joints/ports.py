@@ -18,10 +18,11 @@ import numpy as np
 
 from fastpin.elasticity.operator import Operator
 from fastpin.elasticity.system import System
-from fastpin.kernels.arrays import Contact
-from fastpin.kernels.exchange import CHUNK
+from fastpin.kernels import ports as kernels
+from fastpin.kernels.arrays import Contact, LoadTerms, PortTables, Queue
+from fastpin.kernels.exchange import CHUNK, UPDATES
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.runtime.extensions import blas, lapack
+from fastpin.runtime.extensions import lapack
 from fastpin.runtime.products import add_product
 from fastpin.solver.tableau import Columns, TableauMemory, expected_ties
 from fastpin.solver.unknowns import SINGULAR
@@ -118,15 +119,15 @@ class PortColumns(Columns):
     ) -> None:
         n = system.grid.size
         self._system, self._ports, self._contact = system, ports, contact
-        self._updates = self._done = self._waiting = 0
-        self._latest: tuple[int, np.ndarray] | None = None  # the column that was asked for last, and what it moves
+        self._updates = 0
         status = contact.status
         self._coupling = np.where(np.abs(status) == 1, system.friction * status, 0.0)  # T = tau - coupling N
         dependent = np.r_[status != OPEN, status == STICK]
         self._tables = self._held(dependent)
         self._answers = self._joined()
         rows, columns = self._answers.shape
-        self._left, self._right = (np.empty((size, CHUNK), order="F") for size in (rows, columns))
+        self._left, self._right = np.empty((CHUNK, rows)), np.empty((CHUNK, columns))  # changes of the answers
+        self._counts = np.array([0, 0, -1])
         displaced = system.load_displacement(load_rate)
         given = np.r_[np.where(dependent, -displaced, 0.0), system.load_forces(load_rate)]
         rates = self.response(given, 0)
@@ -134,26 +135,36 @@ class PortColumns(Columns):
         self._tie_all(rates)
         fresh = np.full(2 * n, -1)
         self.tableau = memory.blank._replace(left=memory.left[:, :room], rates=rates, fresh=fresh, chunk=1, width=1)
+        self._arrays = PortTables(
+            ports.rows, ports.place, ports.inputs, self._tables, self._answers, self._left, self._right,
+            self._coupling, np.empty(rows), self._counts,
+        )  # fmt: skip
+
+    def follow(self, load: LoadTerms, queue: Queue, stop: float, most_events: int, all_at_once: int) -> int:
+        system = self._system
+        code = kernels.follow(
+            self._arrays, self.tableau, self._contact, load, queue, system.friction, system.fixed,
+            system.operator.typical, stop, most_events, all_at_once,
+        )  # fmt: skip
+        self._updates = int(queue.counts[UPDATES])
+        return int(code)
 
     def refresh(self, asked: int, updates: int) -> None:
-        """Compute the column `asked`, with all updates. `updates` is their number."""
-        self._catch_up(updates)
-        nodes = self._ports.rows.shape[1]
-        place, own = divmod(int(self._ports.place[asked]), nodes)
-        column = self._tables[place, own]
-        moved = -self._answered(self._outputs(place), column[nodes:])
-        self._latest = asked, moved
-        values = self._moved(moved)
-        values[place] += column[:nodes]
-        self.tableau.matrix[:, asked] = self._all_rows(values, moved)
-        self.tableau.fresh[asked] = updates
+        """Make all `updates` in the tables. The kernel then computes the column `asked` itself."""
+        while not kernels.catch_up(self._arrays, self.tableau, updates):
+            add_product(self._answers.T, self._right.T, np.asfortranarray(self._left))
+            self._counts[kernels.WAITING] = 0
 
     def response(self, given: np.ndarray, updates: int) -> np.ndarray:
-        self._catch_up(updates)
-        rows = self._ports.rows
-        own = (given[rows][:, None] @ self._tables[:, : rows.shape[1]])[:, 0]
-        moved = self._answered(slice(None), np.r_[-own[:, rows.shape[1] :].ravel(), given[2 * self._coupling.size :]])
-        return self._all_rows(own[:, : rows.shape[1]] + self._moved(moved), moved)
+        if updates:
+            self.refresh(-1, updates)
+        rows, waiting = self._ports.rows, slice(0, self._counts[kernels.WAITING])
+        nodes = rows.shape[1]
+        own = (given[rows][:, None] @ self._tables[:, :nodes])[:, 0]
+        acting = np.r_[-own[:, nodes:].ravel(), given[2 * self._coupling.size :]]
+        moved = self._answers @ acting + (self._right[waiting] @ acting) @ self._left[waiting]
+        values = own[:, :nodes] + (moved[self._ports.inputs][:, None] @ self._tables[:, nodes:, :nodes])[:, 0]
+        return np.concatenate([values.ravel()[self._ports.place], moved[: self._system.motions]])
 
     def _held(self, dependent: np.ndarray) -> np.ndarray:
         """The tables of all interfaces, transposed, with the pairs `dependent` (2n,) exchanged. Other ties are 0.
@@ -209,22 +220,6 @@ class PortColumns(Columns):
         count = self._tables.shape[2] - self._ports.rows.shape[1]
         return slice(place * count, (place + 1) * count)
 
-    def _answered(self, columns: slice, given: np.ndarray) -> np.ndarray:
-        """The product of some columns of the answers and a vector."""
-        waiting = slice(0, self._waiting)
-        found = self._answers[:, columns] @ given
-        found += self._left[:, waiting] @ (given @ self._right[columns, waiting])
-        return np.asarray(found)
-
-    def _moved(self, moved: np.ndarray) -> np.ndarray:
-        """All dependent variables (S, 2k) by the motions and harmonics (g,)."""
-        nodes = self._ports.rows.shape[1]
-        return np.asarray((moved[self._ports.inputs][:, None] @ self._tables[:, nodes:, :nodes])[:, 0])
-
-    def _all_rows(self, values: np.ndarray, moved: np.ndarray) -> np.ndarray:
-        """The vector (2n+m,) from the values of the interfaces (S, 2k) and the motions."""
-        return np.concatenate([values.ravel()[self._ports.place], moved[: self._system.motions]])
-
     def _tie_all(self, rates: np.ndarray) -> None:
         """Tie the shear of open and sticking nodes to the pressure for the expected sense of slip."""
         contact, rows, n = self._contact, self._ports.rows, self._coupling.size
@@ -236,46 +231,3 @@ class PortColumns(Columns):
         self._tables[:, :, half : 2 * half] += tied[:, None] * self._tables[:, :, :half]
         self._tables[:, :half] -= drag[:, :, None] * self._tables[:, half : 2 * half]
         rates[n : 2 * n] += np.where(stuck, self._coupling * rates[:n], 0.0)
-
-    def _catch_up(self, updates: int) -> None:
-        """Make the updates of the tableau in the tables of their interfaces."""
-        done, self._done = self._done, updates
-        for update in range(done, updates):
-            source, slot = int(self.tableau.source[update]), int(self.tableau.slot[update])
-            node = max(source, slot)
-            place, own = divmod(int(self._ports.place[node]), self._ports.rows.shape[1])
-            if source == slot:
-                self._exchange(node, place, own)
-                continue
-            table, shear = self._tables[place], own + self._ports.rows.shape[1] // 2
-            change, self._coupling[node] = -2.0 * self._coupling[node], -self._coupling[node]
-            if slot < 0:  # the tie of a sticking node has turned round
-                table[:, shear] += change * table[:, own]
-            else:  # that of an open node
-                table[own] -= change * table[shear]
-                self._latest = None
-
-    def _exchange(self, pair: int, place: int, own: int) -> None:
-        """Exchange the members of a pair, which has the row `own` of an interface."""
-        nodes, table, inputs = self._ports.rows.shape[1], self._tables[place], self._ports.inputs[place]
-        column, row = table[own].copy(), table[:, own].copy()
-        pivot = column[own]
-        column[own] += 1.0
-        row[own] -= 1.0
-        if self._latest is not None and self._latest[0] == pair:
-            moved = -self._latest[1]
-        else:
-            moved = self._answered(self._outputs(place), column[nodes:])
-        self._latest = None
-        waiting, given = slice(0, self._waiting), row[nodes:]
-        motion, harmonic = 3 * place, self._ports.motions + (given.size - 3) * place
-        by_row = given[:3] @ self._answers[motion : motion + 3]
-        by_row += given[3:] @ self._answers[harmonic : harmonic + given.size - 3]
-        by_row += self._right[:, waiting] @ (given @ self._left[inputs, waiting])
-        blas.dger(-1.0 / pivot, column, row, a=table.T, overwrite_a=1)
-        self._left[:, self._waiting] = moved / (pivot - given @ moved[inputs])
-        self._right[:, self._waiting] = by_row
-        self._waiting += 1
-        if self._waiting == CHUNK:
-            add_product(self._answers.T, self._right, np.ascontiguousarray(self._left).T)
-            self._waiting = 0

@@ -34,7 +34,7 @@ PinnedEdge = tuple[PinSection, np.ndarray, np.ndarray, np.ndarray]
 FIT = -2
 """Place of the fit in a load vector: how far it opens the gaps."""
 
-FAR = 1e-12
+FAR = 1e-9
 """Least displacement of a hole by the other ones that counts, in parts of its own compliance."""
 
 

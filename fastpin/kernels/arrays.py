@@ -52,6 +52,45 @@ class Tableau(NamedTuple):
     width: int
 
 
+class PortTables(NamedTuple):
+    """The tables of S interfaces with ports: k nodes, p outputs and q inputs each; see :mod:`fastpin.joints.ports`.
+
+    There are g motions and harmonics, and m motions.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (S, 2k)
+        Rows of each interface among (N, T) of all nodes.
+    place : ndarray of int, shape (2n,)
+        The place of each row of all nodes among the rows of the interfaces.
+    inputs : ndarray of int, shape (S, q)
+        Places of the inputs among the motions and harmonics.
+    tables : ndarray, shape (S, 2k+q, 2k+p)
+        Map zero-rate variables and inputs to dependent variables and outputs, transposed.
+    answers : ndarray, shape (g, S p + m)
+        Map outputs with the opposite sign, and forces, to the motions and harmonics.
+    left, right : ndarray, shape (room, g), (room, S p + m)
+        Changes of the answers that wait: each adds the product of its two vectors.
+    coupling : ndarray, shape (n,)
+        Shear per pressure of each tie.
+    latest : ndarray, shape (g,)
+        What the column moves that was computed last.
+    counts : ndarray of int, shape (3,)
+        See :mod:`fastpin.kernels.ports`.
+    """
+
+    rows: np.ndarray
+    place: np.ndarray
+    inputs: np.ndarray
+    tables: np.ndarray
+    answers: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    coupling: np.ndarray
+    latest: np.ndarray
+    counts: np.ndarray
+
+
 class Contact(NamedTuple):
     """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (m,) and ``slip_tally``.
 

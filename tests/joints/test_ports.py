@@ -11,8 +11,10 @@ from fastpin import Material, MaterialPair
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, solve_joint, system
 from fastpin.joints.conditions import CENTRING
 from fastpin.joints.ports import Ports
+from fastpin.kernels import exchange, ports
 from fastpin.lugs.outline import rectangle
 from fastpin.solver import held, path
+from tests.support.kernels import run_as_python
 
 pytestmark = pytest.mark.gate
 
@@ -82,6 +84,17 @@ def test_a_tableau_is_built_anew_where_it_has_lost_digits(monkeypatch: pytest.Mo
     once, often = (solved(monkeypatch, joint, 0, drift) for drift in (1e-10, 0.0))
     for one, other in zip(once, often, strict=True):
         np.testing.assert_allclose(other.forces, one.forces, atol=1e-8 * FORCE)
+
+
+def test_plain_python_follows_the_same_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    joint = joint_of((0.05, 0.1, 0.02), (0.3, 0.3, 0.3))
+    compiled = solved(monkeypatch, joint, 0)
+    for kernels in (ports, exchange):
+        run_as_python(kernels, monkeypatch)
+    for one, other in zip(compiled, solved(monkeypatch, joint, 0), strict=True):
+        np.testing.assert_allclose(other.forces, one.forces, atol=1e-12 * FORCE)
+        for contact, same in zip(one.contacts, other.contacts, strict=True):
+            np.testing.assert_array_equal(same.status, contact.status)
 
 
 def test_the_operator_of_ports_has_the_entries_of_its_products(monkeypatch: pytest.MonkeyPatch) -> None:
