@@ -51,7 +51,7 @@ def case_text(case: Case) -> str:
         "solve": {name: value for name, value in options.items() if value != getattr(SolveOptions(), name)},
     }
     head = {"title": case.title, "units": "" if problem.unit_system == SI else problem.unit_system}
-    blocks = [[f"{name} = {_value(words)}" for name, words in head.items() if words]]
+    blocks = [[f"{name} = {toml_value(words)}" for name, words in head.items() if words]]
     for name, table in in_units(problem, tables, CASE).items():
         header = "[[load]]" if name == "load" else f"[{name}]"
         blocks.append([header, *(f"{key} = {_lines(value)}" for key, value in table.items())] if table else [])
@@ -80,23 +80,23 @@ def _loads(history: LoadHistory) -> dict[str, list[float]]:
 def _lines(value: object) -> str:
     """A value as TOML; a long list of numbers on several lines."""
     if not isinstance(value, list) or len(value) <= PER_LINE or not all(isinstance(each, float) for each in value):
-        return _value(value)
+        return toml_value(value)
     lines = [", ".join(map(repr, value[k : k + PER_LINE])) for k in range(0, len(value), PER_LINE)]
     return "\n".join(["[", *(f"    {line}," for line in lines), "]"])
 
 
-def _value(value: object) -> str:
+def toml_value(value: object) -> str:
     """A number, text, truth value, list of numbers, table, list of tables or list of lists as TOML."""
     if isinstance(value, dict):
-        return _value([value])
+        return toml_value([value])
     if isinstance(value, list) and value and isinstance(value[0], list):
-        return f"[{', '.join(_value(tuple(each)) for each in value)}]"
+        return f"[{', '.join(toml_value(tuple(each)) for each in value)}]"
     if isinstance(value, list) and not any(isinstance(each, dict) for each in value):
-        return f"[{', '.join(map(_value, value))}]"
+        return f"[{', '.join(map(toml_value, value))}]"
     if isinstance(value, tuple):
         return f"[{', '.join(map(repr, value))}]"
     if isinstance(value, list):
-        tables = [f"{{ {', '.join(f'{key} = {_value(each)}' for key, each in table.items())} }}" for table in value]
+        tables = [f"{{ {', '.join(f'{key} = {toml_value(each)}' for key, each in table.items())} }}" for table in value]
         return tables[0] if len(tables) == 1 else f"[{', '.join(tables)}]"
     if isinstance(value, str):  # TOML takes the escapes of JSON
         return json.dumps(value, ensure_ascii=False)

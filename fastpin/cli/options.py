@@ -309,7 +309,9 @@ def add_live(commands: Any) -> None:
     """Add ``live``."""
     live = _command(commands, "live", "live", "run", "open a page in the browser: drag the load with the mouse")
     _option(live, "case", None, BUILT_IN, Path, nargs="?")
-    _option(live, "--nodes", "N", "number of nodes round the hole, 5 to 1600 (default 200)", default="200")
+    _option(
+        live, "--nodes", "N", "number of nodes round a hole: 5 to 1600 (default 200), of a joint 16 to 720 (default 64)"
+    )
     _option(live, "--port", "N", "port of the page (default: a free one)", default="0")
     words = "print the address, and open no browser"
     live.add_argument("--no-browser", dest="browser", action="store_false", help=words)

@@ -47,6 +47,9 @@ DECAYED = 1e-7
 """Size of the last harmonic at which no more are taken, in parts of the largest one."""
 
 
+MOST_LOAD = 1e50
+"""Limit of every load, N, Pa or m. Squares of all results are numbers."""
+
 MOST_KEPT = 16
 """Compliances of plates with an outline that are kept."""
 
@@ -363,7 +366,7 @@ def next_loads(joint: Joint, corner: Any, place: int, before: np.ndarray) -> np.
     Raises
     ------
     InputError
-        If a name is unknown, or a value is no finite number.
+        If a name is unknown, or a value is no number or above :data:`MOST_LOAD`.
     """
     if not isinstance(corner, Mapping):
         raise InputError("corners", f"corner {place + 1} must map loads to numbers, not {as_toml(corner)}")
@@ -372,7 +375,7 @@ def next_loads(joint: Joint, corner: Any, place: int, before: np.ndarray) -> np.
         if name in joint.reactions:
             raise InputError(f"corner {place + 1}", f"{name} {reaction_words(joint, name)}")
         known_name(f"corner {place + 1}", name, joint.given_names)
-        found[joint.load_names.index(name)] = number(name, value)
+        found[joint.load_names.index(name)] = number(name, value, -MOST_LOAD, MOST_LOAD)
     return found
 
 

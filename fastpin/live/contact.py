@@ -1,51 +1,27 @@
-"""The contact of a page: it obeys messages by calls of a :class:`fastpin.Session`, and answers with pictures.
+"""The contact of a page: it obeys messages by calls of a session, and answers with pictures.
 
-Nothing here knows of servers or browsers.
+Nothing here knows of servers or browsers, or of what the session solves: see :mod:`fastpin.live.pin` and
+:mod:`fastpin.live.joint`.
 """
 
 from __future__ import annotations
 
 import gc
-import math
 import threading
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable
-from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from fastpin.casefile import case_text
 from fastpin.errors import FastpinError, InputError
-from fastpin.kernels.status import OPEN
 from fastpin.live import protocol
-from fastpin.live.controls import ControlScales, changed_fields, load_controls, problem_controls, vector_axes
-from fastpin.live.pictures import packed, picture
+from fastpin.live.pictures import packed
 from fastpin.live.protocol import Message, refusal
-from fastpin.model import LOADS, Case, Grid, Problem, angles
-from fastpin.model.doubts import doubts
-from fastpin.model.options import ALL_ROUND, SolveOptions
-from fastpin.model.profile import CALLED
-from fastpin.model.unit_systems import SI
-from fastpin.model.units import units
-from fastpin.report.case import profile_words
-from fastpin.sessions import Session
-from fastpin.solver import ConvergenceError, SolveError
-from fastpin.states.state import State
+from fastpin.model import Grid
+from fastpin.solver import SolveError
 from fastpin.version import __version__
-
-NODES = 200
-"""Nodes round the hole, by default. Peak pressures of the built-in case are then good to 1e-4, peak shears to 1e-3.
-
-A multiple of four puts a node at the bottom, at the top and at either side. So a load in these directions has a
-symmetric contact. Between two nodes, one of them would be the first to close, and would turn the pin a little.
-"""
-
-LEAST_CLOSED = 20
-"""Nodes in contact under the first load. Of fewer, curves are coarse, and the peak of the shear may be anywhere."""
-
-MOST_PLAYED = 500
-"""Corners of the case's history that the page can play."""
 
 MOST_LEFT = 4
 """Sessions left behind by all contacts before the garbage is collected. Each is in a cycle of references, with 32 MB of
@@ -58,35 +34,39 @@ Answer = dict[str, Any]
 
 
 class Mark(NamedTuple):
-    """A place to which the page can go back: a session, the numbers of the pictures that led there, and its nodes."""
+    """A place to which the page can go back: a session, the numbers of the pictures that led there, and its nodes.
 
-    session: Session
+    ``size`` is the number of nodes of its state.
+    """
+
+    session: Any
     trail: tuple[int, ...]
     nodes: int
-
-    @property
-    def size(self) -> int:
-        """Number of the nodes that the session has; 0 before the first load."""
-        return 0 if self.session.grid is None else self.session.grid.size
+    size: int
 
 
-class LiveContact:
+class LiveContact(ABC):
     """A contact that is led by messages, see :mod:`fastpin.live.protocol`.
 
-    Every load is one straight step of :attr:`session`. So the states have the bits of ``fastpin.solve`` with the same
-    history and grid. The first corner of the case is the first step.
+    Every load is one straight step of :attr:`session`. So the states have the bits of one run with the same history and
+    nodes. The first corner of the case is the first step.
 
     It is not thread-safe, but :meth:`stop` may be called from any thread.
 
     Parameters
     ----------
-    case : Case
+    session : Session or JointSession
+        Without a load.
     nodes : int
-        Nodes round the hole.
+        Nodes round a hole.
+    first : dict
+        The first load, by names, SI.
+    most_pictures : int
+        Pictures that are remembered.
 
     Attributes
     ----------
-    session : Session
+    session : Session or JointSession
         The present place. Calls must not change it.
     sentence : str
         Why the first corner of the case was not carried; "" if it was.
@@ -94,9 +74,8 @@ class LiveContact:
 
     _left = 0  # sessions left behind by all contacts
 
-    def __init__(self, case: Case, nodes: int = NODES) -> None:
-        self._case, self._nodes = case, nodes
-        self._scales = ControlScales(case.problem, case.history)
+    def __init__(self, session: Any, nodes: int, first: dict[str, float], most_pictures: int) -> None:
+        self._nodes, self._most_pictures = nodes, most_pictures
         self._past: deque[Mark] = deque(maxlen=protocol.MOST_UNDONE)
         self._future: list[Mark] = []
         self._pictures: dict[int, Answer] = {}
@@ -108,15 +87,62 @@ class LiveContact:
         self._known: dict[str, Any] = {}
         self._stop = threading.Event()
         self.sentence = ""
-        self.session = self._new_session(case.problem)
-        given = case.history.corner(0)[0]
+        self.session: Any = session
         try:
-            self._begin(_named(given), 0)
+            self._begin(first, 0)
         except FastpinError as error:
             self.sentence = _sentence(error)
 
-    def _new_session(self, problem: Problem) -> Session:
-        return Session(problem, self._nodes, arc=ALL_ROUND, undo=0)
+    # -- what differs between one pin and a joint ------------------------------------------------------------------
+
+    def checked_nodes(self, nodes: int) -> int:
+        """Nodes of a message, which are allowed for one pin, after their check."""
+        return nodes
+
+    @abstractmethod
+    def _new_session(self) -> Any:
+        """A session of the present problem, with the present number of nodes, without a load."""
+
+    @abstractmethod
+    def _begin(self, loads: dict[str, float], gesture: int) -> None:
+        """Follow the first load, and take the picture of its state."""
+
+    @abstractmethod
+    def _picture(self, state: Any, serial: int, gesture: int) -> Answer:
+        """The picture of a state."""
+
+    @abstractmethod
+    def _rows(self, follow: str) -> list[dict[str, float]]:
+        """The loads to follow after a change: all loads of the history again, or the present load alone."""
+
+    @property
+    @abstractmethod
+    def _allowed(self) -> set[str]:
+        """Names of the loads that the problem takes."""
+
+    @property
+    @abstractmethod
+    def _problem(self) -> object:
+        """What the document of the case depends on."""
+
+    @property
+    @abstractmethod
+    def _size(self) -> int:
+        """Nodes of the present state; 0 without one."""
+
+    @abstractmethod
+    def _case_document(self) -> Answer:
+        """The problem, its controls and its loads."""
+
+    @abstractmethod
+    def case_text(self) -> str:
+        """The problem and the history so far as a case file, on the same nodes.
+
+        Raises
+        ------
+        InputError
+            If there is no history yet, or the case can't be written.
+        """
 
     def obey(self, message: Message) -> list[Answer]:
         """Carry out a message, and return the answers. Errors become answers; the contact is then where it was."""
@@ -158,17 +184,13 @@ class LiveContact:
         if mark is not None:
             self._remember(mark, gesture)
 
+    @abstractmethod
     def _obey_change(self, changes: dict[str, Any], follow: str, gesture: int) -> None:
-        fields = changed_fields(self.session.problem, changes, self._scales)
-        session = self.session.copy()
-        session.change(replay="none", **fields)
-        if session.grid is not None and follow == "load" and session.grid.size != self._nodes:
-            session = self._new_session(session.problem)  # the nodes may have been too many for the new problem
-        self._lead(session, follow, gesture)
+        """Change the problem, and follow the loads again."""
 
     def _obey_nodes(self, nodes: int, follow: str, gesture: int) -> None:
-        mark, self._nodes = self._lasting_mark(), nodes
-        self._lead(self._new_session(self.session.problem), follow, gesture, mark)
+        mark, self._nodes = self._lasting_mark(), self.checked_nodes(nodes)
+        self._lead(self._new_session(), follow, gesture, mark)
 
     def _obey_undo(self) -> None:
         if not self._past:
@@ -197,22 +219,11 @@ class LiveContact:
 
     # -- steps -----------------------------------------------------------------------------------------------------
 
-    def _rows(self, follow: str) -> list[dict[str, float]]:
-        """The loads to follow after a change: all loads of the history again, or the present load alone."""
-        history = self.session.history
-        if history is None:
-            return []
-        given = history.blocks[0].given
-        if follow == "history":
-            return [_named(row) for row in given]
-        present = history.values()[-1]
-        return [_named(np.where(np.all(np.isnan(given), axis=0), np.nan, present))]
-
-    def _lead(self, session: Session, follow: str, gesture: int, mark: Mark | None = None) -> None:
+    def _lead(self, session: Any, follow: str, gesture: int, mark: Mark | None = None) -> None:
         """Lead a new session from no load, and make it the present one. `mark` is the place before."""
         mark, rows = mark or self._lasting_mark(), self._rows(follow)
         self.session, self._trail = session, []
-        allowed = {control["name"] for control in load_controls(session.problem, self._scales)}
+        allowed = self._allowed
         left_out = sorted({name for row in rows for name, value in row.items() if name not in allowed and value != 0.0})
         for row in rows:
             if self._stop.is_set():
@@ -226,40 +237,15 @@ class LiveContact:
             self.sentence = f"The changed problem takes no {' and no '.join(left_out)}: left out"
         self._remember(mark, gesture)
 
-    def _step(self, session: Session, loads: dict[str, float], gesture: int) -> None:
+    def _step(self, session: Any, loads: dict[str, float], gesture: int) -> None:
         """Follow a load, and take the picture of its state."""
         self._add(session.advance(loads), gesture)
 
-    def _begin(self, loads: dict[str, float], gesture: int) -> None:
-        """Follow the first load, with more nodes if the contact is narrow.
-
-        If it is too narrow for the most nodes all round, the solver chooses the nodes.
-        """
-        session, nodes = self.session, self._nodes
-        while True:
-            try:
-                state = session.advance(loads)
-                closed = np.count_nonzero(state.status != OPEN) or nodes
-            except ConvergenceError:
-                closed = 1
-            if closed >= LEAST_CLOSED or nodes >= protocol.MOST_NODES:
-                break
-            nodes = min(4 * math.ceil(0.25 * nodes * max(2.0, LEAST_CLOSED / closed)), protocol.MOST_NODES)
-            session = Session(session.problem, nodes, arc=ALL_ROUND, undo=0)
-        if closed < LEAST_CLOSED:
-            session = Session(session.problem, self._nodes, undo=0)
-            state = session.advance(loads)
-        self.session = session
-        self._add(state, gesture)
-
-    def _add(self, state: State, gesture: int) -> None:
+    def _add(self, state: Any, gesture: int) -> None:
         self._serial += 1
-        shown = replace(state)  # what is read from a state stays in it; the session keeps its states small for undo
-        self._pictures[self._serial] = picture(
-            shown, self._serial, gesture, self._grid_name(state.grid), self._case.history
-        )
+        self._pictures[self._serial] = self._picture(state, self._serial, gesture)
         self._trail.append(self._serial)
-        if len(self._pictures) > protocol.MOST_PICTURES:
+        if len(self._pictures) > self._most_pictures:
             oldest = next(iter(self._pictures))
             del self._pictures[oldest]
             if self._trail[0] == oldest:
@@ -283,7 +269,7 @@ class LiveContact:
         self._gesture = gesture
 
     def _mark(self) -> Mark:
-        return Mark(self.session, tuple(self._trail), self._nodes)
+        return Mark(self.session, tuple(self._trail), self._nodes, self._size)
 
     def _lasting_mark(self) -> Mark:
         """The present place, to be kept. Its session is a copy without matrices, which would fill the memory."""
@@ -315,7 +301,7 @@ class LiveContact:
         self.sentence = ""
         # What the page knows besides pictures, and the objects that it depends on.
         depends: dict[str, tuple[object, ...]] = {
-            "case": (self.session.problem, self._nodes), "reference": (self._reference,), "grids": (len(self._grids),)
+            "case": (self._problem, self._nodes), "reference": (self._reference,), "grids": (len(self._grids),)
         }  # fmt: skip
         for name, value in depends.items():
             known = self._known.get(name)
@@ -333,36 +319,10 @@ class LiveContact:
             "grids": lambda: {name: text for name, (_, text) in self._grids.items()},
         }
 
-    def _case_document(self) -> Answer:
-        """The problem, its controls and its loads."""
-        return case_document(self._case.title, self.session.problem, self._scales) | {
-            "nodes": self._nodes,
-            "most_nodes": protocol.MOST_NODES,
-            "history": [_named(row) for row in self._case.history.values(np.full(len(LOADS), np.nan))[:MOST_PLAYED]],
-        }
-
     def recording(self) -> Answer:
         """Everything that a recording of this contact holds."""
         known = {name: make() for name, make in self._known_things.items()}
         return {"version": __version__, **known, "add": [self._pictures[serial] for serial in self._trail]}
-
-    def case_text(self) -> str:
-        """The problem and the history so far as a case file, on the same nodes.
-
-        Raises
-        ------
-        InputError
-            If there is no history yet, or the plate is a compliance.
-        """
-        history, grid = self.session.history, self.session.grid
-        if history is None or grid is None:
-            raise InputError("case", "no load was followed yet")
-        if "file" in self.session.problem.plate_body.keys:
-            words = "a plate from a compliance file can't be saved here; save the loads (CSV), and name them in a copy"
-            raise InputError("case", f"{words} of your own case file")
-        arc = ALL_ROUND if grid.closed else (float(grid.theta[0]), float(grid.theta[-1]))
-        options = replace(SolveOptions(), nodes=grid.size, arc=arc)
-        return case_text(replace(self._case, problem=self.session.problem, history=history, options=options))
 
 
 def _sentence(error: FastpinError) -> str:
@@ -371,50 +331,3 @@ def _sentence(error: FastpinError) -> str:
     if isinstance(error, SolveError):
         text = text.partition(": ")[2] or text
     return text[:1].upper() + text[1:]
-
-
-def _named(given: np.ndarray) -> dict[str, float]:
-    """The loads that are given, by name."""
-    return {name: float(value) for name, value in zip(LOADS, given, strict=True) if not np.isnan(value)}
-
-
-def _outline(lug: Any) -> list[Answer]:
-    """The edges of a plate of any outline beyond the hole: lines x, y in m, supports and loads."""
-    loads = {name: load.name for load in lug.loads for name in load.parts}
-    return [
-        {
-            "line": np.stack([lug.hole_radius * line.real, lug.hole_radius * line.imag], axis=1).tolist(),
-            "hold": lug.supports.get(part.name),
-            "load": loads.get(part.name),
-        }
-        for part, line in zip(lug.edges, lug.edge_lines, strict=True)
-    ]
-
-
-def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer:
-    """A problem as the page needs it: units, sizes and shapes of the bodies, loads and controls."""
-    lug, bush = problem.plate_body.lug, problem.plate_body.bush
-    around = angles.angle_at(np.arange(CALLED) * (360.0 / CALLED) - 180.0)  # from -180 degrees from the bottom on
-    # A choice of prefixes for all sizes of values, by its name: a power of ten for each unit. 1 kN mm is 1 N m.
-    prefixes = {"kN, mm": {"N": 3, "N/m": 3, "N m": 0, "J": 0, "J/m": 0, "m": -3, "Pa": 6}}
-    return {
-        "title": title,
-        "units": {kind: asdict(unit) for kind, unit in units(problem).items()},
-        "prefixes": prefixes if problem.unit_system == SI and not problem.dimensionless else {},
-        "dimensionless": problem.dimensionless,
-        "friction": problem.most_friction,
-        "radius": problem.hole_radius,
-        "clearance": problem.assembled_clearance,
-        "yielded": scales.force * problem.surfaces.beta_star,
-        "bore": problem.pin_body.bore_radius,
-        "plate": problem.plate_body.kind,
-        "bush": None if bush is None else bush.outer_radius,
-        "rim": lug.outer_radius if math.isfinite(lug.outer_radius) else None,
-        "outline": None if lug.geometry is None else _outline(lug.geometry),
-        "profiles": {name: packed(each.at(around, problem.hole_radius)) for name, each in problem.profiles.items()},
-        "profile_words": profile_words(problem),
-        "doubts": [str(doubt) for doubt in doubts(problem, None, SolveOptions())],
-        "axes": vector_axes(problem, scales),
-        "loads": load_controls(problem, scales),
-        "controls": problem_controls(problem, scales),
-    }

@@ -58,6 +58,9 @@ MOST_WAITING = 64
 MOST_PICTURES = 2_000
 """Pictures of a history that are remembered: a minute of dragging, up to 20 MB with 200 nodes."""
 
+MOST_OF_HOLES = 5_000
+"""Pictures of single holes that a joint remembers: 500 steps of five pins in two plates, 45 MB."""
+
 MOST_UNDONE = 200
 """Gestures that can be undone."""
 

@@ -12,10 +12,10 @@ from fastpin.assess.outputs import json_ready
 from fastpin.assess.wear import DEBRIS, damages
 from fastpin.damage import WornFatigue
 from fastpin.errors import InputError
-from fastpin.live.contact import case_document
 from fastpin.live.controls import ControlScales
 from fastpin.live.page import recorded_page
 from fastpin.live.pictures import packed, picture
+from fastpin.live.pin import case_document
 from fastpin.live.protocol import MOST_PICTURES
 from fastpin.model import angles, points
 from fastpin.model.assessment import FatigueAssessment

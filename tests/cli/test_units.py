@@ -15,7 +15,7 @@ import pytest
 from fastpin import casefile
 from fastpin.assess.outputs import json_ready
 from fastpin.cli import options
-from fastpin.live.contact import LiveContact
+from fastpin.live.pin import LivePin
 from fastpin.live.protocol import Message
 from tests.support.tiers import some_survey
 from tests.support.unit_walk import MOST_ROWS, PARTS, UNIT, T, Walk, is_times, leaves, walk, words
@@ -158,7 +158,7 @@ def check_summary(*texts: str) -> None:
 
 @pytest.mark.parametrize("thick", [True, False])
 def test_the_live_page_names_units_with_their_factors(thick: bool) -> None:
-    contact = LiveContact(casefile.parse_case(words(thick)[0]), 31)
+    contact = LivePin(casefile.parse_case(words(thick)[0]), 31)
     contact.obey(Message("load", 1, {"loads": {"Q": 1e5}, "gesture": 1}))
     found = json_ready(contact.recording())
     wrong = PER_METRE if thick else IN_ALL

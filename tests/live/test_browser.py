@@ -26,7 +26,10 @@ from selenium.webdriver.common.keys import Keys
 import fastpin
 from fastpin import casefile
 from fastpin.bodies import Ring
+from fastpin.joints import parse_joint
 from fastpin.live.contact import LiveContact
+from fastpin.live.joint import LiveJoint
+from fastpin.live.page import recorded_page
 from fastpin.live.pictures import CURVE_ERROR
 from fastpin.live.recording import record_life, record_page
 from fastpin.live.server import Server
@@ -34,6 +37,7 @@ from fastpin.model.units import units
 from fastpin.states.curves import traction_patches
 from fastpin.wear_lives import WearResult
 from tests.support import seats
+from tests.support.laps import SHEETS
 from tests.support.live_pages import FREE, LIMIT, contact, served, solved
 from tests.support.lives import fretting
 from tests.support.processes import fastpin as fastpin_command
@@ -261,6 +265,37 @@ def test_charts_show_the_tractions_of_solve(tab: Tab) -> None:
     assert np.allclose(hoop, 1e-6 * state.hoop_stress("plate", np.radians(where - 90.0)), rtol=1e-5, atol=1e-4)
     (shown,) = re.findall(r"peak pressure([\d.]+) MPa", tab.text("numbers"))
     assert float(shown) == float(f"{1e-6 * state.peak_pressure:.4g}")
+
+
+def test_a_joint_is_led_and_each_of_its_holes_is_shown(chrome: webdriver.Chrome) -> None:
+    with served(lambda: LiveJoint(parse_joint(SHEETS), SHEETS, 32)) as running:
+        tab = Tab(chrome, running)
+        assert tab.run("return fastpin.joint.places.length") == 2
+        assert [tab.run(f"return document.getElementById('hole').options[{k}].text") for k in (0, 1)] == [
+            "A in sheet", "B in sheet"
+        ]  # fmt: skip
+        tab.set("A.x", "3")  # kN
+        tab.set("hole", "1")
+        (_, pin), state = tab.live.session.state.contacts, tab.live.session.state
+        assert state.load["A.x"] == 3e3
+        assert len(tab.live.session.history) == 2
+        _, _, pressure = tab.curve("pressure")
+        assert np.nanmax(pressure) == pytest.approx(1e-6 * pin.peak_pressure, rel=1e-3)
+        assert f"{pin.load['Q'] * 2e-3 / 1e3:#.4g} kN" in tab.text("numbers")  # the plate is 2 mm thick
+        x, y = tab.run(
+            "const box = fastpin.joint.map.getBoundingClientRect(), place = fastpin.joint.places[0];"
+            "return [box.x + place.x, box.y + place.y]"
+        )
+        tab.swipe((x, y), (x, y))
+        assert tab.run("return fastpin.history.hole") == 0
+        tab.click("save-recording")
+        text = recorded_page(tab.live.recording())
+    path = Path(chrome.folder) / "joint.html"
+    path.write_text(text, encoding="utf-8")
+    replayed = Tab(chrome, path.as_uri())
+    replayed.set("hole", "1")
+    assert replayed.shown("pictures.length") == 2
+    assert replayed.shown("latest.peak_pressure") == pin.peak_pressure
 
 
 DRAWN = """

@@ -17,9 +17,10 @@ from fastpin import casefile
 from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.elasticity.system import System
 from fastpin.live import contact as contact_module
+from fastpin.live import pin as pin_module
 from fastpin.live import protocol
-from fastpin.live.contact import LiveContact
 from fastpin.live.pictures import CURVE_ERROR
+from fastpin.live.pin import LivePin
 from fastpin.model import About, InitialGap, Profile, Wear
 from fastpin.model.angles import angle_at
 from fastpin.states.curves import traction_patches
@@ -414,7 +415,7 @@ def test_a_narrow_contact_gets_more_nodes_until_it_is_wide_again() -> None:
     page = Page(contact(FREE, 101))
     page.tell("change", changes={"clearance": 2e-4})
     assert 101 < page.live.session.grid.size < protocol.MOST_NODES
-    assert np.count_nonzero(page.live.session.state.pressure) >= contact_module.LEAST_CLOSED
+    assert np.count_nonzero(page.live.session.state.pressure) >= pin_module.LEAST_CLOSED
     page.tell("change", changes={"clearance": 1e-5})
     assert page.live.session.grid.size == 101
     load = page.pictures[-1]["load"]
@@ -510,14 +511,14 @@ def test_the_saved_case_keeps_its_origin_and_its_wear() -> None:
     case = replace(
         casefile.parse_case(FREE), title="A joint", about=About(author="A. Smith"), wear=Wear(2e-15, cycles=9)
     )
-    saved = casefile.parse_case(LiveContact(case, NODES).case_text())
+    saved = casefile.parse_case(LivePin(case, NODES).case_text())
     assert (saved.title, saved.about, saved.wear) == (case.title, case.about, case.wear)
 
 
 def test_a_plate_from_a_compliance_file_is_not_saved_but_its_loads_are_pointed_to() -> None:
     case = casefile.parse_case(FREE)
     ring = replace(case.problem, plate_body=Ring(0.02))
-    live = LiveContact(replace(case, problem=replace(ring, plate_body=ring_compliance(ring, 8))), NODES)
+    live = LivePin(replace(case, problem=replace(ring, plate_body=ring_compliance(ring, 8))), NODES)
     assert live.session.state is not None
     with pytest.raises(fastpin.InputError, match=r"^case: a plate from a compliance file .* save the loads \(CSV\)"):
         live.case_text()
@@ -577,8 +578,8 @@ def test_gestures_that_can_be_undone_hold_no_matrices(frozen: None) -> None:
 @pytest.mark.parametrize("load", [{"P": P}, {"P": -P}, {"P": 0.0, "Q": P}, {"P": 0.0, "Q": -P}])
 def test_a_symmetric_load_turns_the_pin_by_rounding_only(load: dict[str, float]) -> None:
     """With 201 nodes none stands at the bottom: one of its neighbours closed first, and the pin turned by 28 nrad."""
-    assert contact_module.NODES % 4 == 0
-    page = Page(contact(nodes=contact_module.NODES))
+    assert pin_module.NODES % 4 == 0
+    page = Page(contact(nodes=pin_module.NODES))
     page.tell("reset")
     page.tell("load", loads=load)
     (picture,) = page.pictures

@@ -13,9 +13,9 @@ from fastpin.assess.outputs import write_csv
 from fastpin.bodies import Bushing, Ring
 from fastpin.damage.distance import points_of_means
 from fastpin.errors import InputWarning
-from fastpin.live.contact import case_document
 from fastpin.live.controls import ControlScales
 from fastpin.live.pictures import picture
+from fastpin.live.pin import case_document
 from fastpin.lugs import fields
 from fastpin.lugs.fields import PlateField, plate_field
 from fastpin.lugs.outline import Lug

@@ -20,6 +20,7 @@ from aiohttp import WSMessage, WSMsgType
 import fastpin
 from fastpin import casefile
 from fastpin.live.contact import LiveContact
+from fastpin.live.pin import LivePin
 from fastpin.live.protocol import Message, read_message
 from fastpin.live.server import Server
 from tests.support.case_texts import PRESSED
@@ -35,9 +36,9 @@ FREE = PRESSED
 """The text of a case with a free pin."""
 
 
-def contact(text: str | None = None, nodes: int = NODES) -> LiveContact:
+def contact(text: str | None = None, nodes: int = NODES) -> LivePin:
     """Return the contact of the built-in case, or of a case's text."""
-    return LiveContact(casefile.builtin_case() if text is None else casefile.parse_case(text), nodes)
+    return LivePin(casefile.builtin_case() if text is None else casefile.parse_case(text), nodes)
 
 
 def message(kind: str, number: int = 1, **fields: Any) -> Message:

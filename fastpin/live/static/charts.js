@@ -65,7 +65,7 @@ const DASHES = [[6, 4], [2, 3]]; // of the curves of bodies beside a line withou
 export class RoundCharts {
   constructor(history) {
     this.history = history;
-    this.peaks = { pressure: 0, shear: 0, high: 0, low: 0 }; // in SI units; they change seldom, so that axes do not flicker
+    this.forget();
     this.ranges = {};
     this.follower = new Follower();
     this.choice = "contact"; // or "whole", or the ends of the part that was marked
@@ -74,6 +74,11 @@ export class RoundCharts {
     this.charts = {};
     for (const name of Object.keys(CURVES)) this.charts[name] = this.make(name, CURVES[name]);
     this.ofLife = []; // charts of a life of wear: their names, units, curves, and the names of these
+  }
+
+  // Forget the ends of the axes.
+  forget() {
+    this.peaks = { pressure: 0, shear: 0, high: 0, low: 0 }; // in SI units; they change seldom, so that axes do not flicker
   }
 
   // Add the charts of a life of wear: the worn depths, downwards as a scar, and the damage.

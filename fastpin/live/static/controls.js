@@ -26,7 +26,7 @@ export class Controls {
 
   // Show a problem. Controls stay where they are if the problem has the same ones: one of them may be in the hand.
   make(isNew = false) {
-    const { loads, controls, nodes } = this.history.case;
+    const { loads, controls, nodes } = this.history.given;
     const kinds = JSON.stringify([loads.map((load) => [load.name, load.size]), controls.map((one) => [one.name, one.choices])]);
     if (isNew || kinds !== this.kinds) this.build(loads, controls, nodes);
     this.kinds = kinds;
@@ -60,7 +60,7 @@ export class Controls {
 
   // Put the present loads and the present problem into their controls.
   show() {
-    const load = this.history.latest?.load ?? {}, { loads, controls, nodes } = this.history.case;
+    const load = this.history.latest?.acting ?? {}, { loads, controls, nodes } = this.history.given;
     for (const one of loads) this.setters.get(loadKey(one))({ value: load[one.name] ?? 0 });
     for (const control of controls) this.setters.get(control.name)(control);
     this.setters.get("nodes")({ value: `${nodes}` });
@@ -128,7 +128,8 @@ export class Controls {
   }
 
   solver(nodes) {
-    const choices = Object.fromEntries([...new Set([...[100, 200, 400, 800].filter((one) => one <= this.history.case.most_nodes), nodes])].sort((a, b) => a - b).map((n) => [n, `${n}`]));
+    const { holes, most_nodes: most } = this.history.given, usual = holes ? [32, 64, 96, 128, 192] : [100, 200, 400, 800];
+    const choices = Object.fromEntries([...new Set([...usual.filter((one) => one <= most), nodes])].sort((a, b) => a - b).map((n) => [n, `${n}`]));
     return this.chooser({ name: "nodes", value: `${nodes}`, choices }, (value, gesture) =>
       this.leader.send("nodes", { nodes: Number(value), follow: this.follow, gesture }));
   }

@@ -401,7 +401,7 @@ function onCircle(angle) {
   return ((angle - 90) * Math.PI) / 180;
 }
 
-function arrow(pen, x, y, tx, ty, colour, head, backwards = false) {
+export function arrow(pen, x, y, tx, ty, colour, head, backwards = false) {
   if (backwards) [x, y, tx, ty] = [tx, ty, x, y];
   const long = Math.hypot(tx - x, ty - y);
   if (long < 1) return;

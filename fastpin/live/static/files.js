@@ -68,7 +68,7 @@ function writeLines(pen, node) {
 
 // The loads of the history as CSV, which fastpin reads as a load history: with a thickness in N, as in its case file.
 export function loadsText(history) {
-  const { loads } = history.case;
-  const lines = history.pictures.map((picture) => loads.map(({ name, unit }) => unit.factor * picture.load[name]).join(","));
+  const { loads } = history.given;
+  const lines = history.pictures.map((picture) => loads.map(({ name, unit }) => unit.factor * picture.acting[name]).join(","));
   return [loads.map(({ name }) => name).join(","), ...lines, ""].join("\n");
 }

@@ -10,7 +10,9 @@ export class History {
   constructor() {
     this.pictures = [];
     this.grids = new Map();
-    this.case = null;
+    this.given = null; // the case of the server: of one pin, or of a joint, which has a case for each hole
+    this.hole = 0; // the hole of a joint that is shown
+    this.case = null; // that of one pin, or of the hole
     this.profiles = null; // initial gaps and friction of the case
     this.reference = null;
     this.life = null; // of wear: its stored cycles, each with the pictures over one cycle
@@ -27,8 +29,8 @@ export class History {
     }
     const isNew = answer.case !== undefined;
     if (isNew) {
-      this.case = answer.case;
-      this.profiles = new Profiles(answer.case);
+      this.given = answer.case;
+      this.takeCase();
     }
     const added = answer.add.map((picture) => this.unpacked(picture));
     this.pictures = this.pictures.slice(answer.drop ?? 0).slice(0, answer.keep ?? 0).concat(added);
@@ -38,6 +40,20 @@ export class History {
     this.place = this.pictures.length - 1;
     if (answer.life) this.takeLife(answer.life);
     return isNew;
+  }
+
+  takeCase() {
+    const { given, hole } = this;
+    this.case = given.holes ? { ...given.holes[hole], title: given.title, prefixes: given.prefixes } : given;
+    this.profiles = new Profiles(this.case);
+  }
+
+  // Show another hole of a joint.
+  look(hole) {
+    this.hole = hole;
+    this.takeCase();
+    this.pictures = this.pictures.map(({ joint }) => this.unpacked(joint));
+    this.reference &&= this.unpacked(this.reference.joint);
   }
 
   // Take a life of wear, and show its end.
@@ -61,8 +77,10 @@ export class History {
     this.pictures = this.cycle.pictures;
   }
 
-  unpacked(picture) {
-    const found = { ...picture, nodes: this.grids.get(picture.grid) };
+  // A picture with its arrays; of a joint that of the hole. "acting" are the loads that the user leads.
+  unpacked(given) {
+    const picture = given.holes?.[this.hole] ?? given;
+    const found = { ...picture, acting: given.load, joint: given.holes && given, nodes: this.grids.get(picture.grid) };
     for (const name of ["pressure", "shear", "gap"]) found[name] = floats(picture[name]);
     found.status = statuses(picture.status);
     if (this.case.friction === 0) {
@@ -90,7 +108,7 @@ export class History {
 }
 
 // The zones of a contact: start and stop in degrees, and the status.
-function zonesOf({ stick, slip }, isFrictionless) {
+export function zonesOf({ stick, slip }, isFrictionless) {
   const found = [...stick.map((ends) => [...ends, 0]), ...slip];
   return found.map(([start, stop, status]) => [start, stop, isFrictionless ? SLIDES : status]);
 }

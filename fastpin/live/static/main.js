@@ -6,6 +6,7 @@ import { partsOf, together } from "live/curves";
 import { Drawing } from "live/drawing";
 import { download, image, loadsText } from "live/files";
 import { History } from "live/history";
+import { JointView } from "live/joint";
 import { Leader } from "live/lead";
 import { LifeSlider } from "live/life";
 import { Link } from "live/link";
@@ -26,6 +27,7 @@ const drawing = new Drawing(at("drawing"), at("scale-note"));
 const charts = new RoundCharts(history);
 const loops = new LoopChart(history);
 const map = new MapChart(history, charts);
+const joint = new JointView(history, look);
 charts.onZoom = show;
 const times = []; // when pictures were asked for and drawn, ms: for measurements
 let waiting = false, link = null, leader = null, player = null, controls = null, life = null;
@@ -45,6 +47,7 @@ function draw() {
   charts.show();
   loops.show();
   map.show();
+  joint.show();
   showNumbers(history);
   life?.draw();
   showTimeline();
@@ -68,14 +71,14 @@ function showTimeline() {
 
 // The contact remembers its way: say so where the load is that of the reference.
 function showLesson() {
-  const { shown, reference, case: given } = history;
+  const { shown, reference, given } = history;
   let words = "";
   if (shown && reference && shown !== reference && shown.serial !== reference.serial) {
     const names = given.loads.map((load) => load.name);
-    if (names.every((name) => near(shown.load[name], reference.load[name], given.loads.find((load) => load.name === name).size))) {
+    if (names.every((name) => near(shown.acting[name], reference.acting[name], given.loads.find((load) => load.name === name).size))) {
       const { values } = together([shown, reference].map((one) => partsOf(one.curves)), WHOLE), before = values(1, "shear");
       const most = values(0, "shear").reduce((found, value, k) => Math.max(found, Math.abs(value - before[k])), 0);
-      const unit = given.units.traction, part = most / Math.max(Math.abs(reference.peak_shear), 1e-300);
+      const unit = history.case.units.traction, part = most / Math.max(Math.abs(reference.peak_shear), 1e-300);
       words = part > 1e-6
         ? `Same load as the reference, ${life ? "on another profile" : "reached in another way"}: the shear differs by up to ${withUnit(most, unit, 3)}.${life ? "" : " The contact remembers its way."}`
         : "Same load and same tractions as the reference.";
@@ -86,8 +89,8 @@ function showLesson() {
 
 // Where a load was lost: the loads that differ from the present ones.
 function where(load) {
-  const before = history.latest?.load ?? {};
-  const moved = history.case.loads.filter(({ name, size }) => !near(load[name] ?? 0, before[name] ?? 0, 1e3 * size));
+  const before = history.latest?.acting ?? {};
+  const moved = history.given.loads.filter(({ name, size }) => !near(load[name] ?? 0, before[name] ?? 0, 1e3 * size));
   const words = moved.map(({ name, unit }) => `${name} = ${withUnit(load[name], unit)}`);
   return words.length ? `, at ${words.join(", ")}` : "";
 }
@@ -111,11 +114,11 @@ function news(answer) {
     const isNew = history.take(answer);
     drawing.lost = null;
     if (isNew) {
-      at("hoop-body").textContent = history.case.plate === "bushing" ? "bush round the hole, and of the plate round its seat (dashed)" : "plate round the hole";
+      describe();
       at("title").textContent = history.case.title ? `· ${history.case.title}` : "";
       document.title = `fastpin live${history.case.title ? ` · ${history.case.title}` : ""}`;
-      at("profiles").textContent = history.case.profile_words.map(([name, words]) => `${name}: ${words}`).join("; ");
       listUnits();
+      if (history.given.holes) showJoint();
       if (history.life) showLife();
       controls?.make();
     } else controls?.show();
@@ -123,7 +126,7 @@ function news(answer) {
     else if (at("message").className !== "gone") say("");
     show();
   } else if (answer.kind === "lost") {
-    drawing.lost = answer.load;
+    drawing.lost = history.given.holes ? null : answer.load;
     say(`${answer.sentence}${where(answer.load)}. The contact stays at the last load that was carried.`);
     controls?.show();
     show();
@@ -131,6 +134,30 @@ function news(answer) {
     say(answer.sentence);
     if (history.case) controls?.show();
   }
+}
+
+// The words on the pin, or on the hole of a joint, that is shown.
+function describe() {
+  at("hoop-body").textContent = history.case.plate === "bushing" ? "bush round the hole, and of the plate round its seat (dashed)" : "plate round the hole";
+  at("profiles").textContent = history.case.profile_words.map(([name, words]) => `${name}: ${words}`).join("; ");
+}
+
+// Show another hole of a joint.
+function look(hole) {
+  history.look(hole);
+  charts.forget();
+  drawing.most = 0;
+  describe();
+  show();
+}
+
+// Show that the problem is a joint of several pins.
+function showJoint() {
+  document.body.classList.add("joint");
+  if (!recorded) at("help").textContent = "The sliders move the loads. Choose a hole above, or in the map.";
+  at("drawing").setAttribute("aria-label", "Pin in the chosen hole");
+  document.querySelector("#legend .load").textContent = "force on the plate";
+  joint.make();
 }
 
 // Show that the recording is a life of wear: a slider of its cycles, and its charts.
@@ -266,4 +293,4 @@ if (recorded) {
 }
 listen();
 document.addEventListener("keydown", keys);
-window.fastpin = { history, drawing, charts, loops, map, link, leader, player, times };
+window.fastpin = { history, drawing, charts, loops, map, joint, link, leader, player, times };

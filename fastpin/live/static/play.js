@@ -35,7 +35,7 @@ export class Player {
 
   // Go straight to a load in so many pictures. Returns whether it was reached.
   async go(to, goes, gesture, steps = STEPS) {
-    const from = { ...this.history.latest?.load };
+    const from = { ...this.history.latest?.acting };
     for (let k = 1; k <= steps; k++) {
       if (!goes()) return false;
       const part = k / steps;
@@ -52,7 +52,7 @@ export class Player {
   playCase() {
     return this.run(async (goes) => {
       await this.link.ask("reset");
-      for (const corner of this.history.case.history) {
+      for (const corner of this.history.given.history) {
         if (!(await this.go(corner, goes, newGesture()))) return;
       }
     });

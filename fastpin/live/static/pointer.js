@@ -22,7 +22,7 @@ export class Pointer {
   }
 
   down(event) {
-    if (event.button !== 0 || !this.history.case) return;
+    if (event.button !== 0 || !this.history.given?.axes.length) return;
     this.before();
     this.gesture = newGesture();
     const tip = this.drawing.tip(this.present());
@@ -73,7 +73,7 @@ export class Pointer {
 
   key(event) {
     const way = KEYS[event.key];
-    if (!way || event.ctrlKey || event.metaKey || !this.history.case) return;
+    if (!way || event.ctrlKey || event.metaKey || !this.history.given?.axes.length) return;
     if (event.target.matches("input, select") || !this.isSeen()) return; // the browser's own keys
     event.preventDefault();
     this.before();
