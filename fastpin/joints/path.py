@@ -29,7 +29,8 @@ from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns
 
 JUMPS = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
-"""Parts of a step at which a state beyond a snap is looked for; the first one only if pins let go one by one."""
+"""Parts of a step at which a state beyond a snap is looked for; the first one only where pins let go one by one, or a
+ring closes all round."""
 
 NEGLIGIBLE, OF_SPRINGS = 1e-2, 10.0
 """Force of a contact that may be released, in parts of the largest one, and of that of the springs of loose pins."""
@@ -42,6 +43,9 @@ Neat pins in double shear lost their path at 2e-9.
 
 BACK = (0.0, 1e-3, 1e-2, 1e-1, 1.0)
 """Parts of its way from the middle by which a released pin goes back: the edge that it touched may follow it."""
+
+AJAR = 1e-5
+"""Gap with which neat interfaces begin, in parts of the displacement by the loads, to find their first contact."""
 
 MOST_SNAPS = 200
 """Snaps of one step, at most."""
@@ -136,16 +140,32 @@ def _error(system: PinsSystem, lost: StepLostError, done: float) -> SolveError:
 def _first_of_neat(system: PinsSystem, start: Configuration, load: np.ndarray) -> tuple[Configuration, float]:
     """The first contact of neat pins. All grows in proportion, so that one implicit increment is exact.
 
-    It begins with all nodes without a gap sticking. Where other pins are loose, or plates are clamped, only a small
-    part of the step is taken.
+    It begins with all nodes without a gap sticking, and then with the statuses to which they come if they begin a
+    little ajar. Where other pins are loose, or plates are clamped, only a small part of the step is taken.
     """
     neat = start.gap == 0.0
     begun = replace(start, status=np.where(neat, resting_status(system), OPEN).astype(np.int8))
-    for part in (1.0, 1e-1, 1e-2, 1e-3, 1e-4) if neat.all() and not system.faying else (1e-4, 1e-5, 1e-6):
-        found = implicit_step(system, begun, start.load + part * (load - start.load))
-        if (after := accepted(system, start, found)) is not None:
-            return after, part
+    parts = (1.0, 1e-1, 1e-2, 1e-3, 1e-4) if neat.all() and not system.faying else (1e-4, 1e-5, 1e-6)
+    for part in parts:
+        reached = start.load + part * (load - start.load)
+        found = accepted(system, start, implicit_step(system, begun, reached, patient=False))
+        if found is None and (status := _closed_from_ajar(system, start, reached)) is not None:
+            guess = replace(start, status=status)
+            found = accepted(system, start, implicit_step(system, guess, reached, patient=False))
+        if found is not None:
+            return found, part
     return start, 0.0
+
+
+def _closed_from_ajar(system: PinsSystem, start: Configuration, load: np.ndarray) -> np.ndarray | None:
+    """The statuses (n,) at `load` if the neat interfaces of the unloaded joint `start` begin ajar; None if lost."""
+    gap = AJAR * float(np.abs(system.loads @ (load - start.load)).max())
+    neat = (start.gap == 0.0) & ~start.closed
+    ajar = replace(system, initial_gap=system.initial_gap + np.where(neat, gap, 0.0))
+    try:
+        return PathStep(ajar, unloaded(ajar), load, TableauMemory(ajar)).follow(1.0).status
+    except StepLostError:
+        return None
 
 
 def _beyond(
@@ -153,16 +173,19 @@ def _beyond(
 ) -> tuple[Configuration, float] | None:
     """A state a little beyond a snap, and the fraction of the step at which it lies; None if none was found.
 
-    Pins let go all together, then together with the loose ones, then one by one. Lemke's method takes most of the time,
-    so it comes last.
+    Pins let go all together, then together with the loose ones, then one by one; first with few iterations, then with
+    many. Lemke's method takes most of the time, so it comes last.
     """
-    ways: list[Any] = [partial(_released, back=back) for back in BACK]
     is_bare = float(np.abs(system.passed(now.tractions)).max()) <= NOTHING
-    ways.insert(len(ways) if is_bare else 0, partial(finite_step, by_lemke=False))
-    pins = range(len(system.pins))
-    fewer = [partial(_released, back=0.0, pins=each) for each in (set(pins), *({pin} for pin in pins))]
-    for way in (*ways, *fewer, partial(creep, on_springs=_on_springs)):
-        for jump in JUMPS if way in fewer else JUMPS[1:]:
+    near, ways = (partial(finite_step, by_lemke=False), JUMPS[1:]), list[Any]([(_closing, JUMPS)])
+    for patient in (False, True):
+        release = partial(_released, patient=patient)
+        releases = [(partial(release, back=back), JUMPS[1:]) for back in BACK]
+        ways += [*releases, near] if is_bare else [near, *releases]
+        pins = range(len(system.pins))
+        ways += [(partial(release, back=0.0, pins=each), JUMPS) for each in (set(pins), *({pin} for pin in pins))]
+    for way, jumps in (*ways, (partial(creep, on_springs=_on_springs), JUMPS[1:])):
+        for jump in jumps:
             reached = min(done + jump, 1.0)
             found = way(system.resting(now.rest), now, before + reached * (after - before))
             if found is not None and (found.status[system.bonded] == STICK).all():
@@ -172,8 +195,21 @@ def _beyond(
     return None
 
 
+def _closing(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
+    """A finite step to `load` if an interface may close all round, as a ring that grows into its hole; else None.
+
+    It begins with all nodes of such interfaces closed: their gaps are less than the loads move anything.
+    """
+    near = start.gap <= float(np.abs(system.loads @ (load - start.load)).max())
+    closing = [part for part in system.nodes.parts if near[part].all() and not start.closed[part].all()]
+    begun = start.copy()
+    for part in closing:
+        begun.status[part] = np.where(start.closed[part], start.status[part], resting_status(system)[part])
+    return accepted(system, start, implicit_step(system, begun, load, patient=False)) if closing else None
+
+
 def _released(
-    system: PinsSystem, start: Configuration, load: np.ndarray, back: float, pins: Set[int] | None = None
+    system: PinsSystem, start: Configuration, load: np.ndarray, back: float, patient: bool, pins: Set[int] | None = None
 ) -> Configuration | None:
     """A state at `load` in which contacts that carried next to nothing have let go: all, or those of some `pins`.
 
@@ -195,7 +231,7 @@ def _released(
         loose.pressure[nodes] = loose.shear[nodes] = 0.0
     held, loose = system.resting(rest), replace(loose, rest=rest)
     if loose.closed.any():
-        return accepted(held, loose, implicit_step(held, loose, load))
+        return accepted(held, loose, implicit_step(held, loose, load, patient))
     apart = solve_statuses(held, loose.status, loose.slip, load, loose.rest_gap)
     return None if apart is None else accepted(held, loose, accept_solution(loose, apart, load))
 

@@ -201,7 +201,7 @@ class Problem:
         pin, *seats = self.interfaces  # each contact of the joint is checked as a problem of its own
         if pin.is_gripped and any(not seat.is_gripped for seat in seats) and not self.plate_body.lug.in_joint:
             words = "must be positive where the pin has an interference fit: only a pressed bush carries such a pin"
-            raise InputError("interference", words)
+            raise InputError("interference", f"{words}; a joint of one pin may have a loose one")
 
     def _checked_friction(self, radius: float) -> float | Profile:
         """The coefficient of friction: a number, or a profile if it varies. `radius` is the radius of the hole."""

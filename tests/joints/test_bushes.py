@@ -15,12 +15,16 @@ from fastpin import Grid, InputError, Material, MaterialPair, NoEquilibriumError
 from fastpin.bodies import Bushing, Ring
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, parse_joint, solve_joint
 from fastpin.joints.document import document_of, joint_from
+from fastpin.joints.path import follow, unloaded
 from fastpin.joints.solving import JointMatrices, joint_system, load_values, plate_compliance, reference_force
 from fastpin.joints.varied import BaseJoint
 from fastpin.kernels.status import STICK
 from fastpin.model import LOADS
 from fastpin.model.angles import BOTTOM
+from fastpin.model.loads import Q
 from fastpin.report import joints as report
+from fastpin.solver import run as solver_run
+from fastpin.solver.tableau import TableauMemory
 from fastpin.storage import load_joint, record_joint, resume_joint
 from tests.support.faults import faults_of
 from tests.support.laps import ALUMINIUM, BETA, FORCE, SHEETS, STEEL, through_both, with_cover
@@ -66,6 +70,45 @@ def test_one_pin_in_a_bush_is_that_of_solve(
         assert found.seat.dissipation == pytest.approx(one.seat.dissipation, abs=1e-5 * FORCE * UNIT)
         for body in ("plate", "seat"):
             assert found.peak_hoop_stress(body).value == pytest.approx(one.peak_hoop_stress(body).value, rel=1e-3)
+
+
+def test_a_joint_that_goes_on_from_the_first_contact_of_solve_is_that_of_solve(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside :func:`fastpin.solve` a joint differs by the finite first step of `solve` alone, here by 1e-2."""
+    begun: dict[str, Any] = {}
+
+    def first_contact(system: Any, *arguments: Any) -> Any:
+        begun["system"], found = system, found_by_solve(system, *arguments)
+        begun["contact"] = found[0].copy()
+        return found
+
+    found_by_solve = solver_run.first_contact
+    monkeypatch.setattr(solver_run, "first_contact", first_contact)
+    bush = Bushing(BRONZE, 1.25, -0.1 * UNIT, friction=0.2, bonded=False)
+    problem = Problem(MaterialPair(STEEL, LUG, "strain"), 1.0, 0.1 * UNIT, 0.2, pin_load="body", plate_body=bush)
+    (alone,) = fastpin.solve(problem, [{"P": FORCE, "Q": 0.4 * FORCE}], grid=Grid.circle(24, BOTTOM))
+    pin = JointPin("A", 0j, STEEL, 1.0, ("lug",), 0.1 * UNIT, 0.2, bush=bush)
+    joint, corners = Joint((JointPlate("lug", LUG, 1.0),), (pin,), "strain"), [{"A.y": -FORCE, "A.x": 0.4 * FORCE}]
+    values, plates = load_values(joint, corners), [plate_compliance(joint, each, None, float) for each in joint.plates]
+    force = reference_force(joint, values)
+    system = joint_system(joint, plates, force, 24)
+    unit = JointMatrices(joint, plates, force, system).unit
+    now, scales = begun["contact"], begun["system"].scales
+    by, motion = scales.traction / system.scales.traction, now.motion.copy()
+    motion[:2] += now.rest[:2]  # those of `solve` count from its first resting places
+    motion[3:5] += now.rest[2:]
+    part = now.load[Q] * scales.force / (0.4 * FORCE)
+    loads = [np.r_[np.zeros(len(LOADS)), each * values[0] / unit, 0.0, 1.0] for each in (part, 1.0)]
+    tractions, motion = by * now.tractions, by * motion
+    gap, slip = np.split(system.displacement(tractions, motion, loads[0], system.initial_gap), 2)
+    assert np.abs(gap[now.closed]).max() < 1e-12
+    start = replace(
+        unloaded(system), pressure=by * now.pressure, shear=by * now.shear, gap=np.where(now.closed, 0.0, gap),
+        slip=slip, status=now.status, motion=motion, load=loads[0],
+    )  # fmt: skip
+    found, _ = follow(system, start, loads[1], TableauMemory(system), float)
+    assert alone.seat is not None
+    expected = np.r_[alone.pressure, alone.seat.pressure, alone.shear, alone.seat.shear] / system.scales.traction
+    np.testing.assert_allclose(found.tractions, expected, atol=2e-6)
 
 
 def stuck(joint: Joint, loads: dict[str, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -172,6 +172,14 @@ def test_pins_that_only_weak_springs_press_let_go(seed: int) -> None:
 
 
 @pytest.mark.gate
+def test_many_press_fits_begin_beside_a_neat_bush() -> None:
+    """Implicit increments from sticking nodes find no first contact."""
+    joint, corners = random_bushes(np.random.default_rng(307))
+    (state,) = solve_joint(joint, corners[:1], nodes=16, harmonics=6)
+    check_state(state)
+
+
+@pytest.mark.gate
 def test_a_neat_joint_with_friction_is_unloaded_after_reversed_loads() -> None:
     """Without loads the tractions are zero up to rounding."""
     strap = JointPlate("strap", MATERIALS[0], 1.0, rectangle((-4.0, 15.0), (-4.0, 4.0)), {"right": "both"}, moves="x")
