@@ -10,7 +10,7 @@ import numpy as np
 
 from fastpin import cracks, damage
 from fastpin.assess import outputs
-from fastpin.assess.margins import ROW, in_json
+from fastpin.assess.margins import ROW, crack_margins, in_json
 from fastpin.assess.outputs import Curve, Follow, Output, chosen, kept, or_null, table
 from fastpin.cracks.fates import CRACK_FATES, CrackFate
 from fastpin.errors import InputError
@@ -24,7 +24,7 @@ from fastpin.model.unit_systems import SI
 from fastpin.model.units import in_units, system_words, units
 from fastpin.states.choice import missing_corners, span_of
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import Margin, over_yield_words
+from fastpin.states.margins import over_yield_words
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
@@ -182,44 +182,6 @@ def crack_words(problem: Problem, crack: CrackGrowth) -> str:
     parts += ["in the plate round the bush"] if crack.body == "seat" else []
     parts += [law_words(problem, law_of(problem, crack))]
     return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
-
-
-def crack_margins(growth: cracks.Growth) -> list[Margin]:
-    """Return the margins of a crack, each with the state that has its largest K_I.
-
-    Fracture: toughness over the largest K_I, at the first length, and of a crack that grows on its way to the last
-    length or to its arrest. Growth: threshold over the range of K_I at the first length.
-    """
-    length, body = units(growth.problem)["length"], growth.crack.body
-    where = f"mouth at {mouth_words(growth.problem, growth.crack)}"
-    subject = f"{points.edge_body(growth.problem, body)}: crack"
-
-    def row(name: str, words: str, value: np.ndarray, allowable: float, at: int, remark: str) -> Margin:
-        point = float(growth.largest_at[at])
-        return Margin(
-            f"{subject}, {words}", "stress intensity", float(value[at]), allowable, point, remark, growth.loads[point],
-            name, points.owner_of(growth.problem, body),
-        )  # fmt: skip
-
-    rows, toughness = [], growth.law.fracture_toughness
-    first, reached = length.text(float(growth.length[0])), growth.K_max[: growth.reached + 1]
-    top = int(np.argmax(reached))
-    lengths = {"fracture at its first length": 0}
-    if growth.fate != CrackFate.NONE:
-        end = "before it stops" if growth.fate == CrackFate.STOPS else "up to its last length"
-        lengths[f"fracture {end}"] = top
-    for words, at in lengths.items():
-        remark = f"length {length.text(float(growth.length[at]), 4)}, {where}"
-        if math.isinf(toughness):
-            known = "not known: the law of growth has no toughness"
-            rows.append(row("fracture", words, growth.K_max, math.nan, at, f"{known}; {remark}"))
-        else:
-            rows.append(row("fracture", words, growth.K_max, toughness, at, remark))
-    threshold = float(growth.threshold[0])
-    if threshold > 0.0:
-        grows = "does not grow" if growth.fate == CrackFate.NONE else "above its threshold it grows, and does not fail"
-        rows.append(row("growth", "threshold", growth.delta_K, threshold, 0, f"length {first}, {where}; {grows}"))
-    return rows
 
 
 QUESTION = outputs.Question(

@@ -1,21 +1,19 @@
-"""The fatigue of a result: as the section [fatigue] of its case asks for it, or else that of its last cycle."""
+"""The fatigue of a result, as the section [fatigue] of its case asks for it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fastpin import damage
 from fastpin.assess import outputs
-from fastpin.damage.criteria import Criterion, criterion_title
-from fastpin.damage.margins import MOST_STOPS as MOST_STOPS
-from fastpin.damage.margins import reserve_margins
-from fastpin.damage.spectrum import SpectrumCycles, bodies_with_lives
+from fastpin.assess.margins import reserve_margins
+from fastpin.damage.spectrum import SpectrumCycles
 from fastpin.errors import InputError
-from fastpin.model import Case, Problem
+from fastpin.model import Case
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA, FatigueAssessment
 from fastpin.model.case import BESIDE
@@ -23,29 +21,18 @@ from fastpin.model.doubts import doubts_given
 from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.points import (
     BODIES,
-    EDGES,
-    Body,
     edge_body,
-    elastic_bodies,
     further_parts,
     has_outline,
-    material_of,
     owner_of,
     point_words,
 )
 from fastpin.model.units import units
-from fastpin.states.choice import missing_corners
-from fastpin.states.cycles import Cycle
 from fastpin.states.margins import over_yield_words, part_of
-from fastpin.states.state import State
 
 if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
     from fastpin.solver.result import Result
     from fastpin.storage.held import Held
-
-SWT: Criterion = "smith-watson-topper"
-"""The criterion of printed texts and pages. It finds the hot spot without constants of the material."""
-
 
 RULES = {
     "elementary": "elementary Miner's rule",
@@ -130,9 +117,11 @@ class Assessed(NamedTuple):
     reason: str = ""
 
     @property
-    def is_along_edges(self) -> bool:
-        """Whether the damage of whole edges is known, not that of some places only."""
-        return self.how.method == "edge" and self.how.angles is None
+    def along_edges(self) -> list[list[damage.SpectrumDamage]]:
+        """The damage along whole edges, by each criterion that has some; none if it is known at some places only."""
+        whole = self.found if self.how.method == "edge" and self.how.angles is None else []
+        by_criterion = ([one for one in whole if one.criterion == name] for name in self.how.criteria)
+        return [each for each in by_criterion if each]
 
 
 def stretch(progress: outputs.Follow | None, begin: float, end: float) -> outputs.Follow | None:
@@ -175,7 +164,7 @@ def lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]:
 
 def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
     spot, counted = found.hot_spot, found.cycles
-    name = f"fatigue of the {edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}"
+    name = f"fatigue of the {edge_body(found.problem, found.body)}, {found.criterion.title()}"
     if math.isnan(spot.theta):
         return f"{name}: no damage"
     parts = [f"{life_words(found, how)}, damage {spot.damage:.4g} {_place(found)}"]
@@ -189,7 +178,8 @@ def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
         for share, times, ends in sorted(same.values(), key=lambda each: -each[0])[:MOST_CYCLES]
         if share >= 0.5
     ]
-    return "; ".join([f"{name}: {', '.join(parts)}", ", ".join(cycles), *_left_out(found)])
+    left_out = part_of(found.problem, owner_of(found.problem, found.body)) if has_outline(found.problem) else ""
+    return "; ".join([f"{name}: {', '.join(parts)}", ", ".join(cycles), *filter(None, [left_out])])
 
 
 def life_words(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
@@ -202,23 +192,16 @@ def life_words(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
     return ", ".join(parts)
 
 
-def edge_of(found: damage.SpectrumDamage | damage.Fatigue) -> str:
+def edge_of(found: damage.SpectrumDamage) -> str:
     """Return the name of the further edge of a plate on which the hot spot lies; "" if it lies on none."""
     (part,) = further_parts(found.problem, found.body, found.hot_spot.theta, found.hot_spot.depth)
     return "" if part is None else str(part.name)
 
 
-def _place(found: damage.SpectrumDamage | damage.Fatigue) -> str:
+def _place(found: damage.SpectrumDamage) -> str:
     """Return words for the hot spot."""
     spot = found.hot_spot
     return "" if math.isnan(spot.theta) else point_words(found.problem, found.body, spot.theta, spot.depth, 2)
-
-
-def _left_out(found: damage.SpectrumDamage | damage.Fatigue) -> list[str]:
-    """Return words for the places of further edges that are left out."""
-    owner = owner_of(found.problem, found.body)
-    part = part_of(found.problem, owner) if owner == "plate" and has_outline(found.problem) else ""
-    return [part] if part else []
 
 
 class _Body(NamedTuple):
@@ -313,108 +296,21 @@ def assessment_words(how: FatigueAssessment) -> str:
     return f"{spectrum}, {rule}{place}{asked}{how.reliability_words}{residual}"
 
 
-def fatigue_lines(states: Sequence[State], cycle: Cycle, over: Mapping[str, float]) -> list[str]:
-    """Return lines of text: the hot spots of plate and bush by Smith, Watson and Topper, their planes and lives.
+def fatigue_curve(found: damage.Fatigue | damage.SpectrumDamage) -> outputs.Curve:
+    """Return angle, depth, parameter or damage, plane and life of the points, in the order of the angles.
 
-    `over` has the bodies that yield, see :func:`fastpin.states.margins.over_yield`: their lives are marked.
-
-    A body without fatigue constants has no line. There is none if the states lack a corner of the cycle, or if the
-    cycle has more than :data:`MOST_STOPS` states.
+    Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis. The damage is
+    that of one spectrum, and its life counts spectra.
     """
-    try:
-        stops = damage.cycle_states(states, cycle)
-    except InputError:
-        return []
-    if not 2 <= len(stops) <= MOST_STOPS:
-        return []
-    bodies = [body for body in fatigue_bodies(stops[0].problem, SWT) if material_of(stops[0].problem, body).fatigue]
-    return [hot_spot_line(damage.fatigue(stops, SWT, body), stops, over) for body in bodies]
-
-
-def spectrum_damages(states: Sequence[State], corners: int) -> list[damage.SpectrumDamage]:
-    """Return the damage of plate and bush by Smith, Watson and Topper over a whole history of so many corners.
-
-    The history is one pass of a repeated spectrum. A body without constants of the life is left out. There is none for
-    less than three corners, for corners that were not kept, or for more than :data:`MOST_STOPS` states.
-    """
-    if corners < 3 or not 2 <= len(states) <= MOST_STOPS or missing_corners(states, 1, corners):
-        return []
-    bodies = [body for body in bodies_with_lives(states[0].problem, SWT) if body in EDGES]
-    return [damage.spectrum_damage(states, SWT, body) for body in bodies]
-
-
-def spectrum_line(found: damage.SpectrumDamage, over: Mapping[str, float]) -> str:
-    """Return a line of text: the hot spot of a body over a spectrum, with its life and plane.
-
-    `over` is that of :func:`fatigue_lines`.
-    """
-    spot, edge = found.hot_spot, edge_body(found.problem, found.body)
-    name = f"fatigue of the {edge} over the whole history as a spectrum, {criterion_title(found.criterion)}"
-    if math.isnan(spot.theta):
-        return f"{name}: none, no plane has both tension and a changing strain"
-    words = f"life {spot.life:.3g} spectra {_place(found)}"
-    mark = over_yield_words(over, owner_of(found.problem, found.body))
-    plane = f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x"
-    return "; ".join([f"{name}: {words}, {plane}", *_left_out(found)]) + mark
-
-
-def fatigue_bodies(problem: Problem, criterion: str) -> list[Body]:
-    """The edges of holes whose fatigue is reported by a criterion: those with constants; else the pin's hole.
-
-    By Smith, Watson and Topper the parameter needs no constants. A laminate has no fatigue.
-    """
-    if not material_of(problem, "plate").is_isotropic:
-        return []
-    elastic = [body for body in EDGES if body in elastic_bodies(problem)]
-    known = [body for body in elastic if criterion == SWT or material_of(problem, body).fatigue]
-    return known or ["plate"]
-
-
-def hot_spot_line(found: damage.Fatigue, states: Sequence[State], over: Mapping[str, float]) -> str:
-    """Return a line of text: the hot spot of a body over the last cycle, its plane, and its life if known.
-
-    The criterion of `found` is "smith-watson-topper". A parameter that is rounding beside the pressures of the states
-    is 0. `over` is that of :func:`fatigue_lines`.
-    """
-    spot, problem = found.hot_spot, found.problem
-    name = f"fatigue of the {edge_body(problem, found.body)} in the last cycle, {criterion_title(found.criterion)}"
-    pressure = max((state.peak_pressure for state in states), default=0.0)
-    if spot.parameter <= outputs.ROUNDING * problem.surfaces.beta_star * pressure**2:
-        return f"{name}: none, no plane has both tension and a changing strain"
-    parts = [f"{units(problem)['stress times strain'].text(spot.parameter, 4)} {_place(found)}"]
-    if np.isfinite(spot.plane):
-        parts.append(f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x")
-    if not np.isnan(spot.life):
-        parts.append(f"life {spot.life:.3g} cycles" if np.isfinite(spot.life) else "infinite life")
-    words = "; ".join([f"{name}: {', '.join(parts)}", *_left_out(found)])
-    return words + over_yield_words(over, owner_of(problem, found.body))
-
-
-def spectrum_curve(found: damage.SpectrumDamage) -> outputs.Curve:
-    """Return angle, depth, damage, plane and life of the points, in the order of the angles, as :func:`fatigue_curve`.
-
-    The damage is that of one spectrum, and the life counts spectra.
-    """
-    columns = {f"damage by {found.criterion}": found.damage, "plane [deg]": np.degrees(found.plane)}
-    return _by_angle(found, columns | {"life [spectra]": found.life})
-
-
-def fatigue_curve(found: damage.Fatigue) -> outputs.Curve:
-    """Return angle, depth, parameter, plane and life of the points, in the order of the angles.
-
-    Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis.
-    """
-    unit = units(found.problem)[found.kind]
-    columns = {f"{found.criterion} [{unit.name}]": unit.factor * found.parameter}
+    if isinstance(found, damage.SpectrumDamage):
+        columns, passes = {f"damage by {found.criterion}": found.damage}, "spectra"
+    else:
+        unit = units(found.problem)[found.kind]
+        columns, passes = {f"{found.criterion} [{unit.name}]": unit.factor * found.parameter}, "cycles"
     if found.plane is not None:
         columns["plane [deg]"] = np.degrees(found.plane)
     if found.life is not None:
-        columns["life [cycles]"] = found.life
-    return _by_angle(found, columns)
-
-
-def _by_angle(found: damage.Fatigue | damage.SpectrumDamage, columns: dict[str, np.ndarray]) -> outputs.Curve:
-    """Return columns of points with their angles and depths, in the order of the angles."""
+        columns[f"life [{passes}]"] = found.life
     angles = np.array([from_bottom(angle) for angle in found.theta.ravel().tolist()])
     length = units(found.problem)["length"]
     places = {"angle [deg]": angles, f"depth [{length.name}]": length.factor * found.depth}

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from fastpin.assess import crack, fatigue, strength
+from fastpin.assess.margins import last_cycle_margins
 from fastpin.assess.outputs import Question, kept
-from fastpin.damage.margins import last_cycle_margins
 from fastpin.model.problem import Problem
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import Found, KeptStates, marked_extremes

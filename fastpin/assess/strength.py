@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from fastpin import damage, solver
 from fastpin.assess import outputs
+from fastpin.assess.margins import strength_margins
 from fastpin.damage.hole_strength import JOINT_MODES
 from fastpin.damage.laminates import MODES
-from fastpin.damage.margins import strength_margins
 from fastpin.errors import InputError
 from fastpin.model import Case, LoadHistory, Problem, angles, checks
 from fastpin.model.case import BESIDE

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fastpin import assess, casefile, figures, live, report, solver, storage
-from fastpin.assess.margins import margin_lines
+from fastpin.assess.margins import MOST_STOPS, margin_lines
 from fastpin.cli import joint, terminal, wear
 from fastpin.cli.options import literal
 from fastpin.cli.plot import seat_of, seat_title
@@ -351,20 +351,18 @@ class RunReport:
         terminal.say(solver_line(held.result))
 
     def _turning(self, held: Held) -> list[State]:
-        """The states of the last cycle, or of a spectrum. None of too many, unless a seat needs them."""
-        cycles = held.result.cycles
-        if not (cycles or _is_spectrum(self.case)):
+        """The states of the last cycle. None of too many, unless a seat needs them."""
+        if not held.result.cycles:
             return []
-        first, last = choice.span_of(cycles[-1]) if cycles else (0, len(self.case.history))
+        first, last = choice.span_of(held.result.cycles[-1])
         size = np.count_nonzero((held.points >= first) & (held.points <= last))
-        is_short = size <= assess.fatigue.MOST_STOPS or (cycles and self.case.problem.seat is not None)
-        return held.between(first, last) if is_short else []
+        return held.between(first, last) if size <= MOST_STOPS or self.case.problem.seat is not None else []
 
     def _paragraphs(
         self, held: Held, cycle: LoadCycle | None, found: Mapping[str, Any]
     ) -> dict[str, Callable[[], list[str]]]:
         """The lines below the table, each with the name of what is read for them."""
-        case, problem, cycles = self.case, self.case.problem, held.result.cycles
+        problem, cycles = self.case.problem, held.result.cycles
         peaks, states = held.peaks, self._turning(held) if cycle is None else cycle.states
 
         def seat() -> list[str]:
@@ -384,14 +382,6 @@ class RunReport:
             known = found.get(name)
             return [] if known is None else [*assess.questions.QUESTIONS[name].lines(known, over_yield(margins()))]
 
-        def lives() -> list[str]:
-            if found.get("fatigue") is not None:
-                return of_question("fatigue")
-            if cycles:
-                return assess.fatigue.fatigue_lines(states, cycles[-1], over_yield(margins()))
-            damages = assess.fatigue.spectrum_damages(states, len(case.history)) if _is_spectrum(case) else []
-            return [assess.fatigue.spectrum_line(one, over_yield(margins())) for one in damages]
-
         return {
             "largest hoop stress": lambda: hoop_lines(problem, peaks),
             "bush": lambda: bush_line(problem, peaks).splitlines(),
@@ -400,13 +390,7 @@ class RunReport:
             "last cycle": lambda: [] if cycle is None else [assess.cycle.cycle_line(cycle)],
             "margins": lambda: margin_lines(problem, margins()),
             **{name: partial(of_question, name) for name in BESIDE},
-            "fatigue": lives,
         }
-
-
-def _is_spectrum(case: Case) -> bool:
-    """Whether a history without cycles may do damage that is told: most runs then need not import what counts it."""
-    return len(case.history) > 2 and any(pair.plate.fatigue for pair in (case.problem.pair, case.problem.surfaces))
 
 
 def _reached(result: solver.Result) -> int:

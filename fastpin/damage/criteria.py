@@ -469,8 +469,3 @@ FATIGUE_CRITERIA: dict[str, FatigueCriterion] = dict([
     "dang-van": FatigueCriterion("traction", _LIMITS, _by_limits(dang_van, dang_van_limit)),
 }  # fmt: skip
 """The criteria by name."""
-
-
-def criterion_title(criterion: str) -> str:
-    """Return the name of a criterion as it is printed, such as "Smith-Watson-Topper"."""
-    return criterion.title()

@@ -13,11 +13,11 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.assess.crack import growth_curve
-from fastpin.assess.fatigue import assessment_words, fatigue_bodies, fatigue_curve, spectrum_curve
+from fastpin.assess.fatigue import assessment_words, fatigue_curve
 from fastpin.cracks import Growth
 from fastpin.damage import CRITERIA, NO_CRACK, SPECTRUM_CRITERIA, Fatigue, SpectrumDamage, cycle_states, fatigue
 from fastpin.damage.assessed import MOST_REFINED
-from fastpin.damage.criteria import Criterion, criterion_title
+from fastpin.damage.criteria import Criterion
 from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
@@ -26,7 +26,16 @@ from fastpin.figures.style import COLOURS, MAX_NAMED, caption, draw_grid, line, 
 from fastpin.model import angles, checks
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.crack import mouth_words
-from fastpin.model.points import EDGES, Body, edge_body, further_parts, point_words
+from fastpin.model.points import (
+    EDGES,
+    Body,
+    edge_body,
+    further_parts,
+    isotropic_bodies,
+    material_of,
+    point_words,
+)
+from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.choice import span_of
 
@@ -56,8 +65,18 @@ def fatigue_plot(
         return _spectrum_plot(subject, criterion, body, depth)
     result = subject.part(*span_of(with_cycles(subject).cycles[-1]))
     cycle = cycle_states(result, result.cycles[-1])
-    bodies = (fatigue_bodies(cycle[0].problem, criterion) or ["plate"]) if body is None else [body]
+    bodies = _bodies(cycle[0].problem, criterion) if body is None else [body]
     return fatigue_of([fatigue(cycle, criterion, one, depth=depth) for one in bodies])
+
+
+def _bodies(problem: Problem, criterion: str) -> list[Body]:
+    """The edges of holes that a criterion is drawn for: those with constants; else the pin's hole.
+
+    The parameter of Smith, Watson and Topper needs no constants.
+    """
+    edges = [body for body in isotropic_bodies(problem) if body in EDGES]
+    known = [body for body in edges if criterion == "smith-watson-topper" or material_of(problem, body).fatigue]
+    return known or ["plate"]
 
 
 def _assessed_plot(subject: Subject, how: FatigueAssessment) -> Plot:
@@ -79,7 +98,7 @@ def _spectrum_plot(subject: Subject, criterion: Criterion, body: Body | None, de
     known = bodies_with_lives(result.problem, criterion)
     bodies = [one for one in known if one in EDGES] if body is None else [one for one in known if one == body]
     if not bodies:
-        others = (fatigue_bodies(result.problem, criterion) or ["plate"]) if body is None else [body]
+        others = _bodies(result.problem, criterion) if body is None else [body]
         return fatigue_of([fatigue(result.states, criterion, one, depth=depth) for one in others])
     straight = len(result) > MOST_REFINED
     how: dict[str, Any] = {"depth": depth, "straight": straight, "progress": subject.progress}
@@ -112,13 +131,13 @@ def fatigue_of(found: AnyFatigue | Sequence[AnyFatigue]) -> Plot:
     if any(np.ptp(one.depth.ravel()[_on_hole(one)]) > 0.0 for one in each):
         raise InputError("found", "must be of points at one depth")
     edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in each)
-    title, life = criterion_title(each[0].criterion), " and the life" * any(one.life is not None for one in each)
+    title, life = each[0].criterion.title(), " and the life" * any(one.life is not None for one in each)
     drawn, shown = f"{title} parameter", f"Parameter {title}"
     if of_spectrum:
         drawn, shown = f"damage by {title}", f"Damage of one spectrum by {title}"
     return Plot(
         lambda look: _draw(look, each),
-        [spectrum_curve(one) if isinstance(one, SpectrumDamage) else fatigue_curve(one) for one in each],
+        list(map(fatigue_curve, each)),
         f"Line chart of the {drawn} along the edge of the {edges}.",
         f"{shown} along the edge of the {edges}, with its hot spot{life}. Short lines are the worst planes.",
     )
@@ -148,7 +167,7 @@ def _draw(look: Look, found: Sequence[AnyFatigue]) -> Sheet:
         top.set_ylim(min(1.15 * lowest, 0.0), max(1.15 * highest, 0.0))
     else:
         top.set_yticks([0.0])  # no other value has a meaning
-    top.set_ylabel(quantity(f"{words}{criterion_title(found[0].criterion)}", unit))
+    top.set_ylabel(quantity(f"{words}{found[0].criterion.title()}", unit))
     for k, life in lives.items():
         angle, order = _by_angle(found[k])
         below[0].semilogy(angle, np.where(np.isfinite(life), life, np.nan)[order], **line(2 * k))

@@ -15,7 +15,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from fastpin.assess.wear import coefficient_words, cycles_curve, damage_curve, followed_words, scar_curves
 from fastpin.damage import WornFatigue
-from fastpin.damage.criteria import Criterion, criterion_title
+from fastpin.damage.criteria import Criterion
 from fastpin.figures import style
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.sketch import load_ranges
@@ -234,7 +234,7 @@ def damage_of(life: WearResult, found: WornFatigue) -> Plot:
         [damage_curve(found)],
         f"Map of the damage under the first surface of the {edge_body(found.problem, found.body)}, and its largest "
         f"value over {cycles_text(life[-1].cycle)}: {found.words}.",
-        f"Damage by {criterion_title(found.criterion)} of the material under the first surface, and the largest damage "
+        f"Damage by {found.criterion.title()} of the material under the first surface, and the largest damage "
         "of all material that is still there. Damage goes with the material that wears off.",
         bitmap=True,
     )
@@ -259,7 +259,7 @@ def _draw(look: Look, life: WearResult, found: WornFatigue) -> Sheet:
     ]
     sheet.legend(handles, 2)
     words = found.words.replace(" um ", " µm ") + ("" if life.complete else f"; {followed_words(life)}")
-    head = f"{edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}: {words}"
+    head = f"{edge_body(found.problem, found.body)}, {found.criterion.title()}: {words}"
     sheet.head(look.title, head, caption=life_caption(life))
     return sheet
 

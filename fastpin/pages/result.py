@@ -139,7 +139,7 @@ def write_source(
     """
     makers = WEAR_SECTIONS
     if source.life is None:
-        left_out = {name for name in QUESTIONS if name != "fatigue" and getattr(source.case, name) is None}
+        left_out = {name for name in QUESTIONS if getattr(source.case, name) is None}
         left_out |= {"seat"} if source.case.problem.seat is None else set()
         makers = [make for make in SECTIONS if make.__name__ not in left_out]
     what = "Frictional contact" if source.life is None else "Wear in the frictional contact"

@@ -10,7 +10,6 @@ import numpy as np
 
 from fastpin.assess.crack import law_words
 from fastpin.assess.cycle import cycle_line
-from fastpin.assess.fatigue import Assessed, hot_spot_line, spectrum_line
 from fastpin.assess.margins import verdict
 from fastpin.assess.outputs import MAX_ROWS, ROUNDING, Column
 from fastpin.assess.questions import QUESTIONS
@@ -102,10 +101,7 @@ def overview(page: PageParts) -> PageSection:
         sentences += lines if len(lines) <= MOST_BLOCKS else [many]
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
         assessed = source.answer("fatigue")
-        known = [] if isinstance(source.fatigue, str) or assessed else source.fatigue
         sentences += [] if assessed is None else QUESTIONS["fatigue"].lines(assessed, source.over_yield)
-        sentences += [hot_spot_line(found, source.held.peaks, source.over_yield) for found in known]
-        sentences += [spectrum_line(found, source.over_yield) for found in source.spectrum]
         parts.append(Items([sentence(line) for line in sentences if line]))
     parts.append(Text(ANGLES))
     return PageSection("overview", "Overview", parts)
@@ -401,45 +397,12 @@ def stresses(page: PageParts) -> PageSection:
     return PageSection("stresses", "Stresses", parts)
 
 
-def _assessed(page: PageParts, assessed: Assessed) -> list[SectionPart]:
-    """Return the damage along the edges by each criterion, and the hot spots of all bodies."""
-    parts: list[SectionPart] = []
-    for criterion in assessed.how.criteria if assessed.is_along_edges else ():
-        found = [one for one in assessed.found if one.criterion == criterion]
-        parts += [page.album.figure(fatigue_of(found))] if found else []
-    kind, lines = "missing" if assessed.reason else "", QUESTIONS["fatigue"].lines(assessed, page.source.over_yield)
-    return [*parts, *(Text(sentence(line), kind) for line in lines)]
-
-
-def fatigue(page: PageParts) -> PageSection:
-    """Return the hot spot over the last cycle, with the life if the material has constants for it.
-
-    A section [fatigue] of the case replaces it.
-    """
-    if (assessed := page.source.answer("fatigue")) is not None:
-        return PageSection("fatigue", "Fatigue", _assessed(page, assessed))
-    found = page.source.fatigue
-    if page.source.spectrum:
-        lines = [spectrum_line(each, page.source.over_yield) for each in page.source.spectrum]
-        figure = page.album.figure(fatigue_of(page.source.spectrum))
-        return PageSection("fatigue", "Fatigue", [figure, *(Text(sentence(each)) for each in lines)])
-    if isinstance(found, str):
-        return PageSection("fatigue", "Fatigue", [Text(found, "missing")])
-    parts: list[SectionPart] = [page.album.figure(fatigue_of(found))]
-    for one in found:
-        parts.append(Text(sentence(hot_spot_line(one, page.source.held.peaks, page.source.over_yield))))
-        if one.life is None:
-            words = f"There is no life: the material of the {points.edge_body(one.problem, one.body).split(' at ')[0]}"
-            words += " lacks constants for it. The key fatigue of a case file gives them; see docs/fatigue.md."
-            parts.append(Text(words, "missing"))
-    return PageSection("fatigue", "Fatigue", parts)
-
-
 def asked(name: str) -> Callable[[PageParts], PageSection]:
-    """Return what makes the section of a question of the case: lines of its answer, its figure, and remarks."""
-    pictures: dict[str, Callable[[Any], Plot]] = {
-        "crack": crack_growth_of,
-        "strength": lambda found: strength_of(Subject([found.state]).states(), found.how),
+    """Return what makes the section of a question of the case: lines of its answer, its figures, and remarks."""
+    pictures: dict[str, Callable[[Any], list[Plot]]] = {
+        "fatigue": lambda found: [fatigue_of(each) for each in found.along_edges],
+        "crack": lambda found: [crack_growth_of(found)],
+        "strength": lambda found: [strength_of(Subject([found.state]).states(), found.how)],
     }
 
     def section(page: PageParts) -> PageSection:
@@ -447,8 +410,9 @@ def asked(name: str) -> Callable[[PageParts], PageSection]:
         if found is None or isinstance(found, str):
             return PageSection(name, name.capitalize(), [Text(found or NO_STATE, "missing")])
         lines = QUESTIONS[name].lines(found, page.source.over_yield)
-        parts: list[SectionPart] = [Text(sentence(line)) for line in lines]
-        parts += [page.album.figure(pictures[name](found))] if name in pictures else []
+        tone = "missing" if getattr(found, "reason", "") else "plain"
+        parts: list[SectionPart] = [Text(sentence(line), tone) for line in lines]
+        parts += [page.album.figure(each) for each in pictures[name](found)]
         return PageSection(
             name, name.capitalize(), [*parts, *(Text(sentence(line)) for line in QUESTIONS[name].remarks(found))]
         )
@@ -526,8 +490,6 @@ def shortened(text: str) -> str:
 
 SECTIONS: Sequence[Callable[[PageParts], PageSection]] = (
     overview, margins, case, materials, loads, key_figures, tractions, zones, seat, hysteresis, stresses,
-    fatigue, *(asked(name) for name in QUESTIONS if name != "fatigue"), convergence, checks, provenance,
+    *(asked(name) for name in QUESTIONS), convergence, checks, provenance,
 )  # fmt: skip
-"""All sections, in the order of the page. Only a joint whose bush slips has a seat, and only some cases ask questions.
-Fatigue is told unasked, too.
-"""
+"""All sections, in the order of the page. Only a joint whose bush slips has a seat, and not all cases ask questions."""

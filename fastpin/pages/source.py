@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import cached_property
@@ -12,22 +11,19 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.assess.fatigue import SWT, fatigue_bodies, spectrum_damages
-from fastpin.assess.margins import HEADS, in_order, margin_rows, verdict
+from fastpin.assess.margins import HEADS, cycle_margins, in_order, margin_rows, verdict
 from fastpin.assess.questions import QUESTIONS, all_margins
 from fastpin.assess.wear import damages
-from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue
-from fastpin.damage.margins import MOST_STOPS, fatigue_margins
+from fastpin.damage import WornFatigue
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
 from fastpin.model import LOADS, Case, LoadHistory, SolveOptions
 from fastpin.model.case import About
-from fastpin.model.points import edge_body
 from fastpin.pages.content import Album, Facts, PageSection, Text
 from fastpin.report.states import stored_rows
 from fastpin.solver import Result
 from fastpin.states import LoadCycle, State, choice
-from fastpin.states.margins import Margin, over_yield, walk_margins
+from fastpin.states.margins import Margin, over_yield
 from fastpin.storage.held import Held
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
@@ -233,26 +229,6 @@ class Source:
         """Why there is no last cycle; empty if there is one."""
         return self._cycle if isinstance(self._cycle, str) else ""
 
-    @cached_property
-    def fatigue(self) -> list[Fatigue] | str:
-        """Fatigue of plate and bush over the last cycle; or a sentence that says why it is not known."""
-        body = edge_body(self.case.problem, "plate")
-        bodies = fatigue_bodies(self.case.problem, SWT)
-        if self.case.problem.surfaces.plate.is_rigid:
-            return f"The {body} is rigid: it has no stress and no fatigue."
-        if not bodies:
-            return f"The {body} is a laminate: the criteria of fatigue are those of isotropic bodies."
-        if self.cycle is None:
-            return f"Fatigue needs a cycle: {self.why_no_cycle}."
-        count = len(self.cycle.states)
-        if count > MOST_STOPS:
-            how = f"fastpin plot {self.path} fatigue" if self.path else f'result.fatigue("{SWT}")'
-            return f"The last cycle has {count:,} states; fatigue of more than {MOST_STOPS} takes long. Left to: {how}"
-        try:
-            return [fatigue(self.cycle.states, SWT, one) for one in bodies]
-        except InputError as error:
-            return f"There is no fatigue: {error.field} {error.reason}."
-
     def answer(self, name: str) -> Any:
         """Return what is found for a question; a sentence says why it is not known. None without its section."""
         if name not in self.answers:
@@ -275,16 +251,6 @@ class Source:
         """What is known of the questions of the case, by name."""
         known = {name: self.answer(name) for name in QUESTIONS}
         return {name: each for name, each in known.items() if each is not None and not isinstance(each, str)}
-
-    @cached_property
-    def spectrum(self) -> list[SpectrumDamage]:
-        """Damage of plate and bush over a history without repeated blocks, see :func:`spectrum_damages`."""
-        is_wanted = self.case.fatigue is None and not self.result.cycles and self.life is None
-        states = self.held.read(range(self.points.size)) if is_wanted and self.points.size <= MOST_STOPS else []
-        try:
-            return spectrum_damages(states, len(self.case.history))
-        except InputError:
-            return []
 
     @cached_property
     def worn(self) -> list[WornFatigue]:
@@ -371,16 +337,9 @@ class PageParts:
     @cached_property
     def margins(self) -> list[Margin]:
         """The margins of yield, bush, fatigue, crack and plies, the smallest one first."""
-        source, problem = self.source, self.source.case.problem
-        cycle = [] if source.cycle is None else source.cycle.states
-        found = source.found
-        judged = {edge_body(problem, one.body) for one in found["fatigue"].reserves} if "fatigue" in found else set()
-        last_cycle = walk_margins(cycle) + [
-            row
-            for row in fatigue_margins(problem, source.fatigue, cycle)
-            if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
-        ]
-        return in_order(all_margins(source.held.static_margins, last_cycle, found))
+        source = self.source
+        last_cycle = [] if source.cycle is None else cycle_margins(source.case.problem, source.cycle.states)
+        return in_order(all_margins(source.held.static_margins, last_cycle, source.found))
 
 
 def sentence(line: str) -> str:

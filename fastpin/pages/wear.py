@@ -10,7 +10,6 @@ import numpy as np
 from fastpin.assess.outputs import columns_at, printed_rows
 from fastpin.assess.wear import DEBRIS, cycle_columns, cycle_lines, followed_words, law_rows
 from fastpin.damage import WornFatigue
-from fastpin.damage.criteria import criterion_title
 from fastpin.figures.scar import damage_of, scar_plot, wear_plot
 from fastpin.figures.states import Subject
 from fastpin.model import FatigueAssessment, angles, points, ties
@@ -138,7 +137,7 @@ def damage(page: PageParts) -> PageSection:
 
 
 def _subject(found: WornFatigue) -> str:
-    return f"{points.edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}"
+    return f"{points.edge_body(found.problem, found.body)}, {found.criterion.title()}"
 
 
 def _race(found: WornFatigue) -> list[tuple[str, str]]:

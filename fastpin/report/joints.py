@@ -12,7 +12,6 @@ import numpy as np
 from fastpin.assess import crack, fatigue, outputs
 from fastpin.assess.outputs import Column, table
 from fastpin.cracks import Growth
-from fastpin.damage.criteria import criterion_title
 from fastpin.errors import InputError
 from fastpin.joints import (
     Joint,
@@ -278,7 +277,7 @@ def fatigue_cells(judged: Judged, how: FatigueAssessment) -> list[tuple[str, str
     over, cells = judged.over, []
     for pin, plate, found in judged.damages:
         spot, owner = found.hot_spot, owner_of(found.problem, found.body)
-        name = f"{pin} in {plate}, {'hole' if found.body == 'plate' else owner}, {criterion_title(found.criterion)}"
+        name = f"{pin} in {plate}, {'hole' if found.body == 'plate' else owner}, {found.criterion.title()}"
         if math.isnan(spot.theta):
             cells.append((name, "no damage", "", ""))
             continue

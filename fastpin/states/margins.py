@@ -1,7 +1,7 @@
 """Margins of safety: of the strengths of each body, and of a bush in its seat, each with its state.
 
-A margin of safety is allowable/value - 1, as aerospace engineers write it: below 0 the part fails. Margins of fatigue
-stand in :mod:`fastpin.damage.margins`, and margins of cracks in :mod:`fastpin.assess.crack`.
+A margin of safety is allowable/value - 1, as aerospace engineers write it: below 0 the part fails. All other margins
+stand in :mod:`fastpin.assess.margins`.
 """
 
 from __future__ import annotations

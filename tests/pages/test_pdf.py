@@ -87,7 +87,7 @@ def test_no_figure_stands_above_the_title(tmp_path: Path) -> None:
 def test_sections_stand_on_the_pages_that_the_contents_and_the_outline_name(report):
     texts, pdf = report
     outline = [entry for entry in pdf.outline if not isinstance(entry, list)]
-    assert len(outline) == len(SECTIONS) - 3  # no seat, no crack, no strength
+    assert len(outline) == len(SECTIONS) - 4  # no seat and no questions
     for number, entry in enumerate(outline, 1):
         page = pdf.get_destination_page_number(entry) + 1
         title = str(entry.title).removeprefix(f"{number}. ")

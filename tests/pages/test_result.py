@@ -112,7 +112,7 @@ def test_page_can_be_read_without_seeing_it(text: str) -> None:
 def test_every_section_stands_in_the_contents(text: str) -> None:
     page = Page(text)
     names = [found["id"] for tag, found in page.attributes if tag == "section"]
-    assert len(names) == len(sections.SECTIONS) - 3 == 14  # no seat, no crack, no strength
+    assert len(names) == len(sections.SECTIONS) - 4 == 13  # no seat and no questions
     links = [found["href"] for tag, found in page.attributes if tag == "a"]
     assert links == ["#content", *(f"#{name}" for name in names)]
 
@@ -206,25 +206,6 @@ def test_the_last_closed_part_of_a_history_without_blocks_is_its_cycle() -> None
 
 
 @pytest.mark.gate
-@pytest.mark.usefixtures("undrawn")
-def test_a_history_without_cycles_has_the_damage_of_a_spectrum(only: Callable[..., None], tmp_path: Path) -> None:
-    """A long one, and one whose material lacks constants, say why there is no fatigue."""
-    only(sections.overview, sections.fatigue)
-    history = fastpin.LoadHistory([{"P": 4e5, "Q": 2e5}, {"P": 1e5}, {"P": 6e5, "Q": -2e5}, {"P": 2e5, "Q": 0.0}])
-    words = {}
-    for name in ("2024-T3", "steel"):
-        pair = MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS[name])
-        result = fastpin.solve(fastpin.Problem(pair, 1e-2, 1e-5, 0.3), history, nodes=61)
-        write_report(result, tmp_path / f"{name}.html")
-        words[name] = (tmp_path / f"{name}.html").read_text(encoding="utf-8")
-        life = result.spectrum_damage(constants=fastpin.MATERIALS["2024-T3"].fatigue).hot_spot.life
-        told = f"over the whole history as a spectrum, Smith-Watson-Topper: life {life:.3g} spectra"
-        assert words[name].count(told) == (2 if name == "2024-T3" else 0)
-    assert "Damage of one spectrum" in words["2024-T3"]
-    assert "Fatigue needs a cycle" in words["steel"]
-
-
-@pytest.mark.gate
 def test_a_result_in_memory_has_the_same_page(tmp_path: Path) -> None:
     path, calls = tmp_path / "page.htm", []
     result = fastpin.solve(
@@ -237,7 +218,7 @@ def test_a_result_in_memory_has_the_same_page(tmp_path: Path) -> None:
     assert re.search(r"\d ± \d", words)
     assert "There are no error bars" not in words
     assert "shortcut" not in words  # the options of the solver are not known
-    assert calls == [(k, len(sections.SECTIONS) - 3) for k in range(len(sections.SECTIONS) - 2)]
+    assert calls == [(k, len(sections.SECTIONS) - 4) for k in range(len(sections.SECTIONS) - 3)]
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -349,7 +330,7 @@ def test_doubtful_values_and_notes_stand_in_the_overview(only: Callable[..., Non
 
 @pytest.mark.usefixtures("undrawn")
 def test_the_materials_show_a_laminate_with_its_plies_and_sources(only: Callable[..., None], tmp_path: Path) -> None:
-    only(sections.materials, sections.fatigue)
+    only(sections.materials)
     plate = Laminate.from_layup("[0/45/-45/90]2s", "T300/5208")
     problem = fastpin.Problem(MaterialPair(Material(210e9, 0.3), plate, "stress"), 10e-3, 2e-5, 0.2)
     history = fastpin.LoadHistory([{"P": 1e6}, {"P": 5e5}]).repeated(2)
@@ -358,7 +339,6 @@ def test_the_materials_show_a_laminate_with_its_plies_and_sources(only: Callable
     assert "69.676 GPa" in words
     assert "axis 1 at 0 deg from the bottom" in words
     assert "Source of the constants of T300/5208: Jones, Mechanics of Composite Materials" in words
-    assert "The plate is a laminate: the criteria of fatigue are those of isotropic bodies." in words
 
 
 @pytest.mark.usefixtures("undrawn")
