@@ -10,6 +10,7 @@ from typing import Any
 
 from fastpin import casefile, figures, joints, solver, storage
 from fastpin.assess.outputs import Follow
+from fastpin.casefile.toml_text import read_text
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_files
 from fastpin.errors import InputError
@@ -19,10 +20,17 @@ from fastpin.model.units import from_units
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draw one kind of figure of a stored result, of a joint or a pin in it, or of a case file."""
+    """Draw one kind of figure of a stored result, of a joint or a pin in it, of a case file or of a joint file."""
+    if options.result.suffix.lower() == ".toml" and joints.is_joint_file(read_text(options.result)):
+        options.kind = options.kind or "plates"
+        _check(options, "joint file")
+        _check_of_joint(options, True)
+        file = joints.read_joint(options.result)
+        subject_of_file = figures.joint_sketch.JointFileSubject(file)
+        return _draw(options, file.title, file.joint.unit_system, lambda progress: subject_of_file)
     if options.result.suffix.lower() == ".toml":
         options.kind = options.kind or "sketch"
-        _check(options, "case" in KINDS[options.kind].sources)
+        _check(options, "case")
         _check_of_joint(options, False)
         case = casefile.read_case(options.result)
         return _draw(options, case.title, case.problem.unit_system, lambda progress: figures.states.Subject(case))
@@ -30,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
         is_joint = stored.is_joint
         usual = ("holes" if options.pin is None else "tractions") if is_joint else "scar" if stored.is_life else None
         options.kind = options.kind or usual or "tractions"
-        _check(options, False)
+        _check(options, None)
         _check_of_joint(options, is_joint)
         if is_joint:
             return _draw_of_joint(options, stored)
@@ -107,12 +115,19 @@ def hole_of(
     return options.pin, first if options.plate is None else options.plate
 
 
-def _check(options: argparse.Namespace, is_case: bool) -> None:
-    """Refuse options that have no effect on this kind of figure."""
-    if options.result.suffix.lower() == ".toml" and not is_case:
+def _check(options: argparse.Namespace, file: str | None) -> None:
+    """Refuse options that have no effect on this kind of figure, and kinds that a TOML `file` can't have.
+
+    `file` is "case", "joint file", or None for a result.
+    """
+    sources, is_case = KINDS[options.kind].sources, file == "case"
+    if file == "joint file" and file not in sources:
+        words = f"is a joint file, drawn by plates; {options.kind} needs its result: fastpin joint FILE -o RESULT"
+        raise InputError(str(options.result), words)
+    if is_case and file not in sources:
         needed = {"result": "a result: fastpin run", "life": "a life of wear: fastpin wear"}
         needed["joint"] = "the result of a joint: fastpin joint"
-        words = needed[KINDS[options.kind].sources[0]]
+        words = needed[sources[0]]
         raise InputError(str(options.result), f"is a case file; {options.kind} needs {words} CASE -o FILE")
     if is_case and options.states is not None:
         raise InputError("--states", "chooses a state of a result; a case file has none")

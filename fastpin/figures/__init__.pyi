@@ -1,4 +1,5 @@
 from . import joint as joint
+from . import joint_sketch as joint_sketch
 from . import load_cycle as load_cycle
 from . import plotting as plotting
 from . import sheet as sheet
@@ -20,6 +21,7 @@ from .joint import plot_displacement as plot_displacement
 from .joint import plot_joint as plot_joint
 from .joint import plot_share_bars as plot_share_bars
 from .joint import plot_shares as plot_shares
+from .joint_sketch import plot_joint_sketch as plot_joint_sketch
 from .laminates import plot_stiffness as plot_stiffness
 from .laminates import plot_strength as plot_strength
 from .load_cycle import plot_loops as plot_loops

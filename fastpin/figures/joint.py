@@ -89,7 +89,7 @@ def joint_of(result: JointResult, state: int = -1) -> Plot:
     """
     _with_states(result)
     chosen = result[whole_number("state", state, -len(result), len(result) - 1)]
-    extent = _extent(chosen)
+    extent = extent_of(chosen.joint)
     return Plot(
         lambda look: _draw_map(look, chosen, extent),
         instead=f"Map of {len(chosen.joint.plates)} plates and {len(chosen.joint.pins)} pins with the hoop stress.",
@@ -194,9 +194,8 @@ def _forces(result: JointResult) -> dict[str, list[float]]:
     }
 
 
-def _extent(state: JointState) -> tuple[float, float, float, float]:
+def extent_of(joint: Joint) -> tuple[float, float, float, float]:
     """Least and largest x and y, m, of all outlines and holes."""
-    joint = state.joint
     points = [pin.at for pin in joint.pins]
     points += [z for plate in joint.plates for part in plate.outline for z in part.at(np.linspace(0.0, 1.0, 9))]
     radius = max(joint.radius_in(plate) for plate in joint.plates)
@@ -212,7 +211,7 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
     sheet = look.sheet([min(height, 6.0)] * len(joint.plates), extra=1.3, sharex=True)
     theta = np.linspace(-np.pi, np.pi, AROUND)
     hoops = [(contact.seat or contact).hoop_stress("plate", theta) for contact in state.contacts]
-    of_joint, size = joint_units(joint), _length(joint)
+    of_joint, size = joint_units(joint), length_unit(joint)
     factor, unit = of_joint["traction"].scale([float(np.abs(hoop).max()) for hoop in hoops])
     largest = factor * max(float(np.abs(hoop).max()) for hoop in hoops) or 1.0
     norm = TwoSlopeNorm(0.0, -largest, largest)
@@ -268,7 +267,7 @@ def _draw_hole(
     longest: float,
 ) -> None:
     """Draw one hole: the ring of the hoop stress, the zones of contact, and the force of its pin."""
-    contact, (pin, of), factor = state.contacts[place], state.joint.sections[place], _length(state.joint).factor
+    contact, (pin, of), factor = state.contacts[place], state.joint.sections[place], length_unit(state.joint).factor
     radius, centre = factor * pin.hole_radius(of.name), factor * pin.at
     ring = centre + radius * np.multiply.outer([1.0, RING], np.exp(1j * theta))
     panel.pcolormesh(
@@ -294,7 +293,7 @@ def _draw_hole(
         panel.annotate("", xy=(head.real, head.imag), xytext=(centre.real, centre.imag), arrowprops=style)
 
 
-def _length(joint: Joint) -> Unit:
+def length_unit(joint: Joint) -> Unit:
     """The unit of lengths along the axes; mm in SI units."""
     return Unit(1e3, "mm") if joint.unit_system == SI else joint_units(joint)["length"]
 

@@ -95,6 +95,7 @@ SOURCES = {
     "life": "a life of wear",
     "case": "a case file",
     "joint": "a joint of several pins",
+    "joint file": "a joint file",
     "hole": "a pin in a plate of a joint",
 }
 """Words for what a figure may show."""
@@ -131,6 +132,7 @@ KINDS = {
         "a criterion along the edge over the last cycle, or damage",
         ("csv", "body", "criterion", "depth"),
     ),
+    "plates": Kind("joint_sketch", "a joint or its file: plates, pins and loads", (), ("joint", "joint file")),
     "holes": Kind("joint", "a joint: hoop stress, contact and forces in all holes", ("at",), ("joint",)),
     "shares": Kind("joint", "a joint: the force of each pin at all load points", ("csv",), ("joint",)),
     "share-bars": Kind("joint", "a joint: the share of each pin in the force on each plate", ("csv",), ("joint",)),

@@ -29,9 +29,12 @@ from fastpin.wear_lives import WearResult
 
 if TYPE_CHECKING:  # joints are compiled code
     from fastpin.figures.joint import JointSubject
+    from fastpin.figures.joint_sketch import JointFileSubject
 
 
-def plot_of(kind: str, subject: Subject | JointSubject, after: float | None = None, **options: Any) -> Plot:
+def plot_of(
+    kind: str, subject: Subject | JointSubject | JointFileSubject, after: float | None = None, **options: Any
+) -> Plot:
     """Return the figure of a kind of :data:`fastpin.figures.kinds.KINDS`. The options are keywords of its function.
 
     Of a life of wear the figure shows one cycle on the profile `after` so many cycles. Without `after`, and without a

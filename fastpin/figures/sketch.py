@@ -220,25 +220,19 @@ def _draw_plate(
     for part in lug.edges:
         if part.name in lug.supports:
             hold = lug.supports[part.name]
-            z_held, style = factor * part.at(np.linspace(0.0, 1.0, 33)), _hold_line(hold)
+            z_held, style = factor * part.at(np.linspace(0.0, 1.0, 33)), hold_line(hold)
             panel.plot(z_held.real, z_held.imag, zorder=2, **style)
             entries[hold] = Line2D([], [], label=HOLD_WORDS[hold], **style)
     for load in lug.loads:
         if load.name in stresses:
             span = stresses[load.name]
-            _draw_load(
-                panel,
-                lug,
-                load,
-                factor * (-1.0 if span[1] <= 0.0 else 1.0),
-                STRESS,
-                range_text(problem, load.name, span),
-            )
+            sense = factor * (-1.0 if span[1] <= 0.0 else 1.0)
+            draw_edge_load(panel, lug.edges, lug.extent, load, sense, STRESS, range_text(problem, load.name, span))
     low, high = complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())
     return low, high, [*entries.values()]
 
 
-def _hold_line(hold: str) -> dict[str, Any]:
+def hold_line(hold: str) -> dict[str, Any]:
     """The look of a support. Dashes tell supports apart in grey."""
     place = list(HOLD_WORDS).index(hold)
     return line(place, place, 4.0)
@@ -315,7 +309,7 @@ def _size(span: LoadRange) -> float:
     return max(abs(span[0]), abs(span[1]))
 
 
-def _arrow(panel: Axes, tail: complex, head: complex, span: LoadRange, colour: str) -> None:
+def draw_arrow(panel: Axes, tail: complex, head: complex, span: LoadRange, colour: str) -> None:
     """Draw an arrow from `tail` to `head` for a positive load, turned round for a negative one, two heads for both."""
     if span[1] <= 0.0:
         tail, head = head, tail
@@ -332,7 +326,7 @@ def _draw_force(panel: Axes, name: str, span: LoadRange, words: str, scale: Scal
     both = span[0] < 0.0 < span[1]
     if span[1] <= 0.0:
         along, span = -along, (-span[1], -span[0])
-    _arrow(panel, -length * along if both else 0j, length * along, span, FORCE)
+    draw_arrow(panel, -length * along if both else 0j, length * along, span, FORCE)
     place = (length + 0.22) * along if name == "P" else scale.beside * 1.3j
     panel.text(place.real, place.imag, words, color=FORCE, bbox=BOX, **LETTERS)
 
@@ -354,14 +348,14 @@ def _draw_remote(panel: Axes, name: str, span: LoadRange, words: str, scale: Sca
     for side in (1.0, -1.0):
         if name == "sxx":
             for y in shift:
-                _arrow(panel, complex(side * out, y), complex(side * (out + SHORT), y), span, STRESS)
+                draw_arrow(panel, complex(side * out, y), complex(side * (out + SHORT), y), span, STRESS)
         elif name == "syy":
             for x in shift:
-                _arrow(panel, complex(x, side * out), complex(x, side * (out + SHORT)), span, STRESS)
+                draw_arrow(panel, complex(x, side * out), complex(x, side * (out + SHORT)), span, STRESS)
         else:  # it acts along +x on the upper side, and along +y on the right side
             beside, ends = side * (half + 0.12), side * half * np.array([-0.7, 0.7])
-            _arrow(panel, complex(ends[0], beside), complex(ends[1], beside), span, STRESS)
-            _arrow(panel, complex(beside, ends[0]), complex(beside, ends[1]), span, STRESS)
+            draw_arrow(panel, complex(ends[0], beside), complex(ends[1], beside), span, STRESS)
+            draw_arrow(panel, complex(beside, ends[0]), complex(beside, ends[1]), span, STRESS)
     place = {"sxx": (half + 0.2, 0.9 * half), "syy": (0.0, out + SHORT + 0.25), "sxy": (0.0, -out - SHORT - 0.25)}[name]
     panel.text(*place, words, color=STRESS, bbox=BOX, **LETTERS)
 
@@ -382,14 +376,14 @@ def _draw(look: Look, lug: Lug) -> Sheet:
     for part in (*lug.contact_edge, *lug.edges):
         hold = lug.supports.get(part.name) if part.name else None
         place = 0 if hold is None else 1 + list(HOLD_WORDS).index(hold)
-        kinds[place] = ("free", line(5, 0, 1.4)) if hold is None else (HOLD_WORDS[hold], _hold_line(hold))
+        kinds[place] = ("free", line(5, 0, 1.4)) if hold is None else (HOLD_WORDS[hold], hold_line(hold))
         z = 1e3 * part.at(np.linspace(0.0, 1.0, 61))
         # Snapped to pixels, straight parts would not meet the arcs.
         panel.plot(z.real, z.imag, **kinds[place][1], zorder=3 if hold else 2, snap=False)
     _write_names(panel, lug)
     for load in lug.loads:
         colour = COLOURS[2 + [each.name for each in lug.loads].index(load.name) % 3]
-        _draw_load(panel, lug, load, 1e3, colour, load.name)
+        draw_edge_load(panel, lug.edges, lug.extent, load, 1e3, colour, load.name)
     panel.set_aspect("equal")
     panel.margins(0.14)
     panel.set_xlabel(quantity("x", "mm"))
@@ -417,17 +411,22 @@ def _at(part: Part, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return part.at(share), 1j * part.direction(share)
 
 
-def _draw_load(panel: Axes, lug: Lug, load: PartLoad, factor: float, colour: str, words: str) -> None:
-    """Draw a load as arrows beside its parts, and its words at the last one. A negative `factor` turns the arrows."""
+def draw_edge_load(
+    panel: Axes, parts: Sequence[Part], extent: float, load: PartLoad, factor: float, colour: str, words: str
+) -> None:
+    """Draw a load as arrows beside its parts, and its words at the last one. A negative `factor` turns the arrows.
+
+    `parts` are those of a plate of the size `extent`, m.
+    """
     longest = max(abs(complex(load.x, load.y)) + abs(load.normal), 1e-300)
     end = 0j
-    for part in lug.edges:
+    for part in parts:
         if part.name not in load.parts:
             continue
-        count = ARROWS if part.length > 0.2 * lug.extent else 1
+        count = ARROWS if part.length > 0.2 * extent else 1
         points, inwards = _at(part, (np.arange(count) + 0.5) / count)
-        points = points - 0.2 * LOAD_ARROW * lug.extent * inwards  # beside the line of the edge
-        arrows = (complex(load.x, load.y) - load.normal * inwards) * LOAD_ARROW * lug.extent / longest
+        points = points - 0.2 * LOAD_ARROW * extent * inwards  # beside the line of the edge
+        arrows = (complex(load.x, load.y) - load.normal * inwards) * LOAD_ARROW * extent / longest
         arrows *= math.copysign(1.0, factor)
         outwards = (np.conj(arrows) * inwards).real < 0.0
         tails = np.where(outwards, points, points - arrows)
@@ -437,6 +436,6 @@ def _draw_load(panel: Axes, lug: Lug, load: PartLoad, factor: float, colour: str
             panel.annotate(
                 "", xy=(head.real, head.imag), xytext=(tail.real, tail.imag), arrowprops=style, annotation_clip=True
             )
-        outer = np.where(outwards, tails + arrows, tails) - 0.04 * lug.extent * inwards
+        outer = np.where(outwards, tails + arrows, tails) - 0.04 * extent * inwards
         end = abs(factor) * outer[count // 2]
     panel.text(end.real, end.imag, words, color=colour, fontsize=8.0, ha="center", va="center", parse_math=False)

@@ -306,9 +306,13 @@ def short_load(problem: Problem, name: str, value: float) -> str:
 
 def range_text(problem: Problem, name: str, span: tuple[float, float]) -> str:
     """A load, or the range of its values, with its unit."""
+    return span_text(name, units(problem)[loads.LOAD_KIND[name]], span)
+
+
+def span_text(name: str, of_kind: Unit, span: tuple[float, float]) -> str:
+    """The name of a quantity with its value, or the range of its values, and the unit."""
     if span[0] == span[1]:
-        return f"{name} = {short_load(problem, name, span[0])}"
-    of_kind = units(problem)[loads.LOAD_KIND[name]]
+        return f"{name} = {short(span[0], of_kind)}"
     factor, unit = of_kind.scale(span)
     low, high = (of_kind.number(factor * value, DIGITS).replace("-", "−") for value in span)
     return f"{name}: {low} to {high}\N{NO-BREAK SPACE}{shown_unit(unit)}"

@@ -19,6 +19,7 @@ from fastpin.cracks import Growth
 from fastpin.errors import CaseFileError, InputError
 from fastpin.figures.fatigue import crack_growth_of
 from fastpin.figures.joint import displacement_of, joint_of, share_bars_of, shares_of
+from fastpin.figures.joint_sketch import joint_sketch_of
 from fastpin.joints import JointFile, JointResult, parse_joint
 from fastpin.joints.document import document_of
 from fastpin.joints.pins import BEAM
@@ -267,9 +268,9 @@ def case(source: JointSource) -> PageSection:
     pins = Facts(f"Pins, holes {wide} wide", rows, ("pin", "material and place", "fit"))
     orders = ", ".join(dict.fromkeys(map(str, source.result.harmonics)))
     options = [("plane", joint.plane), ("nodes of each contact", f"{source.result.nodes}"), ("harmonics", orders)]
-    return PageSection(
-        "case", "Joint", [plates, pins, _materials(source), Facts("Options", options, ("option", "value"))]
-    )
+    sketch = source.album.figure(joint_sketch_of(source.result))
+    facts = [plates, pins, _materials(source), Facts("Options", options, ("option", "value"))]
+    return PageSection("case", "Joint", [sketch, *facts])
 
 
 def _bush_words(bush: Any, unit: Any) -> str:

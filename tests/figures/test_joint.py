@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.patches import Circle
 
 from fastpin import InputError, figures
-from fastpin.joints import JointResult, parse_joint, solve_joint
+from fastpin.joints import JOINT_EXAMPLE, JointResult, parse_joint, solve_joint
 from fastpin.storage import record_joint
 from tests.support.commands import refused, said
 from tests.support.drawing import legend_words, plain
@@ -94,3 +95,79 @@ def test_a_pin_in_a_plate_has_the_figures_of_one_pin(stored: Path, tmp_path: Pat
 )
 def test_wrong_options_are_refused(stored: Path, arguments: list[str], message: str) -> None:
     assert message in refused("plot", stored, *arguments)
+
+
+LOADED = """
+[joint]
+[[plate]]
+name = "sheet"
+material = "aluminium"
+thickness = 2e-3
+[[plate]]
+name = "doubler"
+material = "aluminium"
+thickness = 2e-3
+x = [-20e-3, 60e-3]
+y = [-20e-3, 20e-3]
+moves = "free"
+[[pin]]
+name = ["A", "B"]
+at = [[0, 0.0], [30e-3, 5e-3]]
+material = "steel"
+diameter = 6e-3
+bore_radius = 1e-3
+plates = ["sheet", "doubler"]
+clearance = 10e-6
+friction = 0.3
+bush = { material = "steel", outer_radius = 5e-3, interference = 8e-6, bonded = false, friction = 0.15 }
+[[load]]
+"sheet.sxx" = 5e7
+"sheet.syy" = -1e7
+"sheet.sxy" = 1e7
+"A.x" = 2e3
+[[load]]
+"sheet.sxx" = -5e7
+"A.x" = 1e3
+"""
+
+
+def test_a_sketch_has_plates_pins_and_the_ranges_of_all_loads() -> None:
+    figure = figures.plot_joint_sketch(parse_joint(LOADED))
+    sheet, doubler = figure.axes
+    assert [plain(panel.get_title(loc="left")) for panel in (sheet, doubler)] == [
+        "sheet, infinite", "doubler, held by its pins",
+    ]  # fmt: skip
+    words = {plain(text.get_text()) for text in sheet.texts}
+    assert words == {
+        "A", "B", "A.x: 1 to 2 kN", "sheet.sxx: −50 to 50 MPa", "sheet.syy = −10 MPa", "sheet.sxy = 10 MPa",
+    }  # fmt: skip
+    assert {plain(text.get_text()) for text in doubler.texts} == {"A", "B"}
+    radii = sorted({round(patch.radius, 9) for patch in doubler.patches if isinstance(patch, Circle)})
+    assert radii == [1.0, 3.0, 5.0]  # bore, pin and bush, mm
+    figure = figures.plot_joint_sketch(parse_joint(JOINT_EXAMPLE))
+    skin, strap = figure.axes
+    assert [plain(panel.get_title(loc="left")) for panel in (skin, strap)] == ["skin", "strap, moves along x"]
+    assert {plain(text.get_text()) for text in strap.texts} == {"A", "B", "C", "strap.x: 1.5 to 15 kN"}
+    assert legend_words(figure) == ["held"]
+
+
+def test_a_sketch_of_a_result_has_the_loads_of_its_states(stored: Path, tmp_path: Path) -> None:
+    texts = [{plain(text.get_text()) for text in panel.texts} for panel in figures.plot_joint_sketch(sheets()).axes]
+    assert {"A.x: 1 to 4 kN", "B.x = 2 kN"} <= texts[0]
+    bare = figures.plot_joint_sketch(CASE.joint).axes
+    assert {text.get_text() for text in bare[0].texts} == {"A", "B"}
+    said("plot", stored, "plates", "-o", tmp_path / "plates.svg")
+    with pytest.raises(InputError, match="joint: must be a Joint, JointFile or JointResult, not 3"):
+        figures.plot_joint_sketch(3)
+
+
+def test_a_joint_file_is_drawn_before_it_is_solved(tmp_path: Path) -> None:
+    file = tmp_path / "joint.toml"
+    file.write_text(LOADED, encoding="utf-8")
+    out = tmp_path / "plates.png"
+    assert f"wrote {out}" in said("plot", file, "-o", out).out
+    assert out.stat().st_size > 5_000
+    words = "is a joint file, drawn by plates; holes needs its result: fastpin joint FILE -o RESULT"
+    assert words in refused("plot", file, "holes")
+    assert "--csv: has no effect on plates" in refused("plot", file, "--csv", tmp_path / "a.csv")
+    assert "--pin: has no effect on plates, which shows the whole joint" in refused("plot", file, "--pin", "A")
