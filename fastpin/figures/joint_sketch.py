@@ -52,7 +52,7 @@ class JointFileSubject(NamedTuple):
         return "joint file"
 
 
-class Bounds(NamedTuple):
+class Corners(NamedTuple):
     """Least and largest x and y of all panels, in the unit of the axes."""
 
     left: float
@@ -105,10 +105,10 @@ def load_ranges(joint: Joint, of: JointFile | JointResult) -> dict[str, LoadRang
 
 def _draw(look: Look, joint: Joint, ranges: Mapping[str, LoadRange]) -> Sheet:
     size = length_unit(joint)
-    bounds = Bounds(*(size.factor * each for each in extent_of(joint)))
+    bounds = Corners(*(size.factor * each for each in extent_of(joint)))
     room = ROOM * (bounds.right - bounds.left)
     above = room if any(name.endswith("y") for name in ranges) else 0.3 * room
-    bounds = Bounds(bounds.left - room, bounds.right + room, bounds.bottom - above, bounds.top + above)
+    bounds = Corners(bounds.left - room, bounds.right + room, bounds.bottom - above, bounds.top + above)
     height = max((look.width - 0.8) * (bounds.top - bounds.bottom) / (bounds.right - bounds.left), 0.8)
     sheet = look.sheet([min(height, 6.0)] * len(joint.plates), extra=1.0, sharex=True)
     holds: dict[str, Any] = {}
@@ -133,7 +133,7 @@ def _draw(look: Look, joint: Joint, ranges: Mapping[str, LoadRange]) -> Sheet:
     return sheet
 
 
-def _draw_plate(panel: Axes, plate: JointPlate, factor: float, bounds: Bounds, holds: dict[str, Any]) -> None:
+def _draw_plate(panel: Axes, plate: JointPlate, factor: float, bounds: Corners, holds: dict[str, Any]) -> None:
     """Draw a plate with its open holes and supports, whose styles are added to `holds`."""
     if plate.is_infinite:  # the plate goes on: its cut has no line
         width, height = bounds.right - bounds.left, bounds.top - bounds.bottom
@@ -151,7 +151,7 @@ def _draw_plate(panel: Axes, plate: JointPlate, factor: float, bounds: Bounds, h
             panel.plot(z.real, z.imag, zorder=2, **holds[hold])
 
 
-def _draw_pin(panel: Axes, pin: JointPin, plate: JointPlate, factor: float, bounds: Bounds) -> None:
+def _draw_pin(panel: Axes, pin: JointPin, plate: JointPlate, factor: float, bounds: Corners) -> None:
     """Draw a pin with its bush and its bore, and write its name."""
     x, y = factor * pin.at.real, factor * pin.at.imag
     outer, radius = factor * pin.hole_radius(plate.name), factor * pin.radius
@@ -167,7 +167,7 @@ def _draw_pin(panel: Axes, pin: JointPin, plate: JointPlate, factor: float, boun
 
 
 def _draw_loads(
-    panel: Axes, joint: Joint, plate: JointPlate, ranges: Mapping[str, LoadRange], bounds: Bounds, factor: float
+    panel: Axes, joint: Joint, plate: JointPlate, ranges: Mapping[str, LoadRange], bounds: Corners, factor: float
 ) -> None:
     """Draw the loads of a plate, and those of the pins whose first plate it is, as arrows with their values."""
     units, width, outline = joint_units(joint), bounds.right - bounds.left, _points(plate, factor)
@@ -181,7 +181,9 @@ def _draw_loads(
         if owner != plate.name:
             continue
         if joint.load_kind(name) != "traction":
-            begin = _beside(outline, axis) + AWAY * width * axis
+            (left, right), (low, high) = ((z.min(), z.max()) for z in (outline.real, outline.imag))
+            side = complex(right, 0.5 * (low + high)) if axis == 1.0 else complex(0.5 * (left + right), high)
+            begin = side + AWAY * width * axis
             _draw_arrow(panel, begin, begin + LONG * width * axis, span, FORCE, words)
         elif plate.is_infinite:
             _draw_remote(panel, what, span, bounds, words)
@@ -198,13 +200,6 @@ def _points(plate: JointPlate, factor: float) -> np.ndarray:
     return factor * np.concatenate([np.empty(0, dtype=complex), *parts])
 
 
-def _beside(outline: np.ndarray, axis: complex) -> complex:
-    """The middle of the side of an outline, points (k,), that lies ahead along an axis."""
-    low, high = complex(outline.real.min(), outline.imag.min()), complex(outline.real.max(), outline.imag.max())
-    middle = 0.5 * (low + high)
-    return complex(high.real, middle.imag) if axis == 1.0 else complex(middle.real, high.imag)
-
-
 def _draw_arrow(panel: Axes, tail: complex, head: complex, span: LoadRange, colour: str, words: str) -> None:
     """Draw the arrow of a load, and its words beside the head."""
     draw_arrow(panel, tail, head, span, colour)
@@ -215,7 +210,7 @@ def _draw_arrow(panel: Axes, tail: complex, head: complex, span: LoadRange, colo
     )
 
 
-def _draw_remote(panel: Axes, name: str, span: LoadRange, bounds: Bounds, words: str) -> None:
+def _draw_remote(panel: Axes, name: str, span: LoadRange, bounds: Corners, words: str) -> None:
     """Draw the remote stress of an infinite plate as arrows at two sides of the panel, within it."""
     low, high = complex(bounds.left, bounds.bottom), complex(bounds.right, bounds.top)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)

@@ -161,6 +161,7 @@ def test_a_sketch_of_a_result_has_the_loads_of_its_states(stored: Path, tmp_path
         figures.plot_joint_sketch(3)
 
 
+@pytest.mark.gate
 def test_a_joint_file_is_drawn_before_it_is_solved(tmp_path: Path) -> None:
     file = tmp_path / "joint.toml"
     file.write_text(LOADED, encoding="utf-8")
