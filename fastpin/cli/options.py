@@ -183,7 +183,7 @@ def add_wear(commands: Any) -> None:
     """Add ``wear``."""
     words = "follow a load cycle many times on a profile that wears (without debris)"
     wear = _command(commands, "wear", "wear", "run", words)
-    _option(wear, "case", None, "case file (TOML), with the section [wear], or with --coefficient", Path)
+    _option(wear, "case", None, "case file or joint file (TOML), with the section [wear], or with --coefficient", Path)
     _option(wear, "--cycles", "N", "number of cycles, such as 1e5", literal)
     words = "wear coefficient of both bodies together, 1/Pa, or in the units of the case"
     _option(wear, "--coefficient", "K", words, literal)

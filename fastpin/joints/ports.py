@@ -87,6 +87,13 @@ class Ports(Operator):
             unit[part, np.arange(part.size)] = 1.0
             out[:, begin : begin + together] = (self @ unit)[rows]
 
+    def softened(self, softness: np.ndarray) -> Ports:
+        """The same with nodes that are softer: a pressure also opens the gap at its own node, by `softness` (n,)."""
+        tables, half = self.tables.copy(), self.rows.shape[1] // 2
+        own = np.arange(half)
+        tables[:, own, own] += softness[self.rows[:, :half]]
+        return Ports(self.rows, tables, self.motions, self.inputs, self.couplings, self.plates)
+
     def diagonal(self) -> np.ndarray:
         own = np.arange(self.rows.shape[1])
         return np.asarray(self.tables[:, own, own].ravel()[self.place])

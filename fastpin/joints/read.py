@@ -17,12 +17,12 @@ from fastpin.casefile.beside import read_assessment, read_crack
 from fastpin.casefile.bodies import BodySection
 from fastpin.casefile.lug import limits_of, point_of
 from fastpin.casefile.materials import read_material
-from fastpin.casefile.profiles import GAP_KEYS, read_gap
+from fastpin.casefile.profiles import GAP_KEYS, read_gap, read_wear
 from fastpin.casefile.toml_text import CaseText, Inside, Section, parse_text, read_text
 from fastpin.errors import InputError
 from fastpin.joints.parts import Joint, JointPlate, kind_of_load
 from fastpin.joints.pins import Clamp, JointPin, tate_rosenfeld
-from fastpin.joints.result import SectionCrack, check_crack, check_fatigue
+from fastpin.joints.result import SectionCrack, check_crack, check_fatigue, check_wear
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values, reaction_words
 from fastpin.lugs.outline import Part, rectangle
 from fastpin.model.assessment import FatigueAssessment
@@ -42,6 +42,7 @@ from fastpin.model.checks import (
 from fastpin.model.keys import ANY, CASE, ITSELF, MATERIAL, of
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
 from fastpin.model.profile import InitialGap
+from fastpin.model.wear import WEAR_KEYS, Wear
 
 JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8")
 """A commented joint file: a single lap of three bolts."""
@@ -67,6 +68,7 @@ JOINT_KEYS: dict[str, tuple[str, ...]] = {
     ),
     "load": (),
     "fatigue": BESIDE["fatigue"].keys,
+    "wear": WEAR_KEYS,
     "crack": ("pin", "plate", *(key for key in BESIDE["crack"].keys if key not in ("body", "place"))),
 }
 """Sections of a joint file and their keys. The keys of [[load]] are the loads of the joint."""
@@ -82,6 +84,7 @@ _KINDS: dict[str, Any] = {
     | {"clamp": {"force": "force", "flexibility": "flexibility"}}
     | {"bush": CASE["plate_body"] | {ANY: CASE["plate_body"]}, "gap": CASE["gap"] | {ANY: CASE["gap"]}},
     "fatigue": CASE["fatigue"],
+    "wear": CASE["wear"],
     "crack": CASE["crack"],
 }
 """The kinds of the keys, apart from those of the loads."""
@@ -105,6 +108,8 @@ class JointFile(NamedTuple):
         How the fatigue at all pins is assessed, for :meth:`fastpin.joints.JointResult.assessed_fatigue`.
     crack : SectionCrack or None
         A crack at the hole of a pin, for :meth:`fastpin.joints.JointResult.crack_growth`.
+    wear : Wear or None
+        How pins, bushes and plates wear, for :func:`fastpin.wear_lives.wear_joint`.
     """
 
     joint: Joint
@@ -114,6 +119,7 @@ class JointFile(NamedTuple):
     harmonics: int | None = None
     fatigue: FatigueAssessment | None = None
     crack: SectionCrack | None = None
+    wear: Wear | None = None
 
 
 def is_joint_file(text: str) -> bool:
@@ -173,6 +179,7 @@ def joint_file_in(source: CaseText, folder: Path) -> JointFile | None:
     loads = _required(source, "load")
     how = read_assessment(source, source.section("fatigue")) if "fatigue" in source.root else None
     crack = _crack(source) if "crack" in source.root else None
+    wear = read_wear(source.section("wear"), folder, {}) if "wear" in source.root else None
     if source.faults or plane is None or None in plates or None in pins:
         return None
     try:
@@ -201,7 +208,9 @@ def joint_file_in(source: CaseText, folder: Path) -> JointFile | None:
         source.section("fatigue").made(lambda: check_fatigue(joint, how, values))
     if crack is not None:
         source.section("crack").made(lambda: check_crack(joint, crack, len(values)))
-    return None if source.faults else JointFile(joint, corners * times, title, nodes, harmonics, how, crack)
+    if wear is not None:
+        source.section("wear").made(lambda: check_wear(wear, values))
+    return None if source.faults else JointFile(joint, corners * times, title, nodes, harmonics, how, crack, wear)
 
 
 def _crack(source: CaseText) -> SectionCrack | None:

@@ -22,8 +22,10 @@ from fastpin.joints.parts import Joint
 from fastpin.joints.pins import BEAM, whole_name
 from fastpin.model import crack as crack_model
 from fastpin.model.assessment import FatigueAssessment, check_assessment
-from fastpin.model.checks import check_callable, instance, known_name, string, true_or_false
+from fastpin.model.checks import check_callable, instance, known_name, string, true_or_false, whole_number
 from fastpin.model.crack import CrackGrowth
+from fastpin.model.history import MAX_CORNERS
+from fastpin.model.wear import Wear
 from fastpin.states.extremes import KeptStates, find_extremes
 from fastpin.states.margins import Margin, static_margins
 from fastpin.states.state import State
@@ -325,7 +327,7 @@ class JointResult(Sequence[JointState]):
     @property
     def last_cycle_places(self) -> range:
         """The places of the states of the :attr:`last_cycle`."""
-        length, size = _cycle_length(self._loads), len(self)
+        length, size = cycle_length(self._loads), len(self)
         return range(size - length - 1 if length else size, size)
 
     def assessed_fatigue(
@@ -435,7 +437,7 @@ def check_fatigue(joint: Joint, how: FatigueAssessment, loads: np.ndarray) -> No
     _assessed_sections(joint, how)
     if len(loads) < 2:
         raise InputError("fatigue", "needs a turning point: the history has one corner only")
-    if how.over == "cycle" and not _cycle_length(loads):
+    if how.over == "cycle" and not cycle_length(loads):
         raise InputError("over", "the history has no cycles: repeat = 2 in [joint] repeats its corners")
 
 
@@ -459,7 +461,21 @@ def check_crack(joint: Joint, crack: SectionCrack, corners: int) -> None:
         raise InputError("crack", "needs a turning point: the history has one corner only")
 
 
-def _cycle_length(loads: np.ndarray) -> int:
+def check_wear(wear: Wear, values: np.ndarray) -> None:
+    """Check that a joint may wear under the loads of its corners, shape (corners, loads).
+
+    Raises
+    ------
+    InputError
+        If the history has no cycle, or too many cycles are asked for.
+    """
+    length = cycle_length(values)
+    if not length:
+        raise InputError("wear", "the history has no cycles: repeat = 2 in [joint] repeats its corners")
+    whole_number("cycles", wear.cycles, 1, MAX_CORNERS // length - 2)
+
+
+def cycle_length(loads: np.ndarray) -> int:
     """Corners of the shortest run at the end of a history that repeats the loads before; 0 without one."""
     lengths = range(2, len(loads) // 2 + 1)
     return next((n for n in lengths if np.array_equal(loads[-n:], loads[-2 * n : -n])), 0)

@@ -312,25 +312,42 @@ class JointRun:
         SolveError
             ``step``, ``fraction`` and ``load`` say where the joint was lost.
         """
-        joint, system, here = self.matrices.joint, self.matrices.system, self.restart
-        now, since, snaps = here.configuration, here.since.copy(), here.snaps
+        joint, here = self.matrices.joint, self.restart
+        since, acting = here.since.copy(), dict(zip(joint.load_names, loads.tolist(), strict=True))
         try:
-            if not here.corner and system.loads[:, FIT].any():
-                now, snaps = follow(system, now, np.r_[now.load[:-2], 1.0, 1.0], self._memory, lambda part: report(0.0))
-            load = np.r_[np.zeros(len(LOADS)), loads / self._unit, now.load[-2:]]
-            begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size))
-            now, more = follow(system, begun, load, self._memory, report)
-            residuals = residuals_of(system, now)
-            if max(residuals.values()) > MAX_RESIDUAL:
-                now = refined(system, now)
-                residuals = residuals_of(system, now)
-            acting = dict(zip(joint.load_names, loads.tolist(), strict=True))
+            now, snaps, residuals = self.followed(loads, report)
             state = self._maker.state(now, since, residuals, here.corner, acting)
         except SolveError as error:
             _say_where(error, joint, here.corner, self.loads, loads)
             raise
-        self.restart, self.loads = JointRestart(here.corner + 1, now, since, snaps + more, here.seconds), loads
+        self.restart, self.loads = JointRestart(here.corner + 1, now, since, snaps, here.seconds), loads
         return state
+
+    def followed(
+        self, loads: np.ndarray, report: Callable[[float], None], wears: bool = False
+    ) -> tuple[Configuration, int, dict[str, float]]:
+        """Follow a straight step to these loads (loads,), SI, without going there.
+
+        Returns the configuration there, all snaps since the start, and the residuals. With `wears` the slip tally
+        counts int N |ds|.
+
+        Raises
+        ------
+        SolveError
+            If the load can't be carried, or no state was found.
+        """
+        system, here = self.matrices.system, self.restart
+        now, snaps = here.configuration, here.snaps
+        if not here.corner and system.loads[:, FIT].any():
+            now, snaps = follow(system, now, np.r_[now.load[:-2], 1.0, 1.0], self._memory, lambda part: report(0.0))
+        load = np.r_[np.zeros(len(LOADS)), loads / self._unit, now.load[-2:]]
+        begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size, wears))
+        now, more = follow(system, begun, load, self._memory, report)
+        residuals = residuals_of(system, now)
+        if max(residuals.values()) > MAX_RESIDUAL:
+            now = refined(system, now)
+            residuals = residuals_of(system, now)
+        return now, snaps + more, residuals
 
 
 def _say_where(error: SolveError, joint: Joint, step: int, before: np.ndarray, after: np.ndarray) -> None:

@@ -103,7 +103,7 @@ class BaseJoint:
             load = ".".join(rest)
             fault = f"is no factor; loads multiplies all loads, and loads.{loads[0] if loads else 'NAME.x'} one of them"
             fault = "" if not rest or loads is None or load in loads else fault
-        elif section in ("fatigue", "crack"):
+        elif section in ("fatigue", "crack", "wear"):
             fault = f"no run of a sweep asks for it: change [{section}] in the joint file"
         elif section not in JOINT_KEYS:
             fault = f"there is no section [{section}] in a joint file"

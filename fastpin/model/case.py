@@ -214,5 +214,5 @@ class Case:
 def check_wear(problem: Problem) -> None:
     """Raise :class:`InputError` if no wear can be followed in a joint: its bush slips in its seat."""
     if problem.seat is not None or problem.pin_body.is_bush:
-        words = "must be true, in an infinite plate or a ring: the wear in other bushes is not known"
+        words = "must be true, in an infinite plate or a ring: with another bush a joint of one pin wears"
         raise InputError("bonded", words)

@@ -2,6 +2,7 @@ from . import charts as charts
 from . import convergence as convergence
 from . import identify as identify
 from . import joint_document as joint_document
+from . import joint_wear as joint_wear
 from . import joints as joints
 from . import schema as schema
 from . import stress as stress

@@ -12,7 +12,7 @@ from fastpin.assess import crack, outputs, wear
 from fastpin.assess.outputs import Output
 from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.model.checks import choice
-from fastpin.report import charts, convergence, identify, joint_document, summary, tolerances
+from fastpin.report import charts, convergence, identify, joint_document, joint_wear, summary, tolerances
 from fastpin.verification.rows import Check
 from fastpin.version import __version__
 
@@ -96,7 +96,12 @@ _DOCUMENTS: dict[str, Callable[[], outputs.Schema]] = {
     "verify": partial(outputs.whole_schema, CHECKS, has_title=False),
     "benchmarks": partial(outputs.whole_schema, BENCHMARKS, has_title=False),
     "compliance": _compliance,
-    "wear": partial(outputs.whole_schema, (Output("error", "text", optional=True), *wear.LIFE)),
+    "wear": lambda: {  # of one pin, or of a joint
+        "anyOf": [
+            outputs.whole_schema((Output("error", "text", optional=True), *each))
+            for each in (wear.LIFE, joint_wear.LIFE)
+        ]
+    },
     "tolerances": partial(outputs.whole_schema, tolerances.TOLERANCES),
     "crack": partial(outputs.whole_schema, crack.DOCUMENT),
     "charts": partial(outputs.whole_schema, charts.LOOKED, has_title=False),

@@ -143,7 +143,7 @@ def save_joint(content: bytes, path: Path) -> None:
 
 def _followed(case: JointFile, progress: RunProgress | None) -> tuple[JointTask, dict[str, Any]]:
     """What is followed, and the attributes with title and questions."""
-    joint, corners, title, nodes, harmonics, fatigue, crack = instance("case", case, JointFile, "a JointFile")
+    joint, corners, title, nodes, harmonics, fatigue, crack, _ = instance("case", case, JointFile, "a JointFile")
     task = JointTask.of(joint, corners, nodes, harmonics, progress)
     found: dict[str, Any] = {"title": string("title", title)}
     if fatigue is not None:

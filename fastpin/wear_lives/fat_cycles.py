@@ -12,11 +12,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from fastpin.drift.friction import follow_friction, followed_problem, system_with_friction
+from fastpin.elasticity.system import System
 from fastpin.model.checks import MOST_PARAMETER
 from fastpin.model.loads import complete_load
 from fastpin.model.problem import MOST_GAP
@@ -24,12 +25,61 @@ from fastpin.model.profile import Profile
 from fastpin.model.wear import Wear
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import SolveError
-from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED
-from fastpin.states.state import State
-from fastpin.wear_lives.wear_path import WearRun
+from fastpin.wear_lives.wear_path import Removal
 
 Found = TypeVar("Found")
+
+Energy = float | np.ndarray
+"""An energy of a joint, or that of each of its interfaces, shape (interfaces,)."""
+
+
+class WearingRun(Protocol):
+    """What follows a cycle on gaps that wear: one pin, or several with the nodes of all interfaces in a row.
+
+    A place is all from which it goes on; it has the ``configuration``, ``dissipation`` and ``work`` since the start.
+    """
+
+    dissipation: Any
+    work: float
+
+    @property
+    def system(self) -> Any:
+        """The system."""
+
+    @property
+    def now(self) -> Configuration:
+        """The present configuration."""
+
+    @property
+    def load(self) -> np.ndarray:
+        """The present load (loads,), SI."""
+
+    @property
+    def latest(self) -> Any:
+        """Slip tally, ``dissipation`` and ``work`` of the step that was followed last."""
+
+    def here(self) -> Any:
+        """The present place."""
+
+    def go_back(self, start: Any) -> None:
+        """Go to a place."""
+
+    def step_to(self, load: np.ndarray, kept: bool = True, inside: bool = False) -> None:
+        """Follow a straight step to a load (loads,), SI."""
+
+    def wear(self, depth: np.ndarray, softness: np.ndarray | None = None) -> Removal:
+        """Remove material, see :meth:`fastpin.wear_lives.wear_path.WearRun.wear`."""
+
+    def set_gap(self, first: Any, worn: np.ndarray | None) -> None:
+        """Let the next first contact see a gap that has grown by `worn` (n,)."""
+
+    def begins_anew_since(self, before: Configuration) -> bool:
+        """Whether the contact was lost since `before`, and needs the worn gap of :meth:`set_gap`."""
+
+    def states_over(self, cycle: np.ndarray, corner: int, problem: Any) -> tuple[Any, ...]:
+        """The states over one cycle, without wear."""
+
 
 SETTLING = 2
 """First cycles, which are solved one by one: the contact forgets how it was loaded first."""
@@ -64,7 +114,7 @@ class _Sums:
 
     depth: np.ndarray
     removed: float
-    dissipation: float
+    dissipation: Energy
     work: float
 
 
@@ -86,7 +136,7 @@ class Worn:
         Worn depth of pin and plate at each node.
     removed : float
         Elastic energy that went with the material.
-    restart : Restart
+    restart : Restart or WornPlace
         The contact. Its energies count each fat cycle J times.
     loses_contact : bool
         Whether the pin loses contact in the cycle.
@@ -97,7 +147,7 @@ class Worn:
     solved: int
     depth: np.ndarray
     removed: float
-    restart: Restart
+    restart: Any
     loses_contact: bool = False
     pause: int = LEAST_PAUSE
 
@@ -113,25 +163,25 @@ class FatCycles:
 
     Parameters
     ----------
-    run : WearRun
+    run : WearingRun
         A run that counts slip, and stands at the beginning of its history.
     wear : Wear
     cycle : ndarray, shape (corners, loads)
         Loads at the corners of the cycle, SI; NaN keeps the last value.
     """
 
-    def __init__(self, run: WearRun, wear: Wear, cycle: np.ndarray) -> None:
+    def __init__(self, run: WearingRun, wear: Wear, cycle: np.ndarray) -> None:
         system = run.system
         self.run, self._wear, self._cycle = run, wear, cycle
         self._first = system
-        unit = system.scales.traction
-        self._coefficients = unit * wear.coefficients(system.problem.hole_radius, system.grid.theta)
+        self._coefficients = system.scales.traction * coefficients_at(system, wear)
         total = self._coefficients.sum(axis=0)
         self._total = total * (system.friction if wear.law == "energy" else 1.0)
         self._shares = np.divide(self._coefficients, total, out=np.zeros_like(self._coefficients), where=total > 0.0)
         self._stable = system.weights / (2.0 * math.pi)  # compliance of a sawtooth on the grid
-        problem = system.problem
-        self._deepest = MOST_PARAMETER if problem.dimensionless else MOST_GAP * problem.hole_radius
+        beta = system.interfaces[0].problem.surfaces.beta_star
+        for rim in system.interfaces:
+            self._stable[rim.nodes] *= rim.problem.surfaces.beta_star / beta
         self._approach = 0
 
     def begin(self, loads: np.ndarray, wears: bool = True) -> Worn:
@@ -139,9 +189,8 @@ class FatCycles:
         self._approach = len(loads)
         start = Worn(0, 1, 0, np.zeros((2, self.run.system.grid.size)), 0.0, self._restart(), loses_contact=True)
         place = self._followed(start, loads, 1 if wears else 0)
-        rest = place.restart.configuration.rest
         self._followed(place, self._cycle, 0)
-        loses_contact = self.run.now.rest is not rest
+        loses_contact = self.run.begins_anew_since(place.restart.configuration)
         self._stand_at(place)
         return replace(place, loses_contact=loses_contact)
 
@@ -165,7 +214,7 @@ class FatCycles:
         problem = followed_problem(self._first.problem, friction)
         self._stand_at(place)
         try:
-            run = follow_friction(self.run, problem)
+            run = follow_friction(self.run, problem)  # type: ignore[type-var]
         except SolveError as error:
             _name_cycle(error, place.cycle)
             raise
@@ -214,28 +263,19 @@ class FatCycles:
             return place, math.inf
         return fine, self._error(place, fine, coarse)
 
-    def states(self, place: Worn) -> tuple[State, ...]:
+    def states(self, place: Worn) -> tuple[Any, ...]:
         """The states over one cycle at a place, at its beginning and at its corners, without further wear."""
         states = self._with_gap(place, self._states)
         self.run.go_back(place.restart)
         return states
 
-    def _states(self, place: Worn) -> tuple[State, ...]:
-        run, recorder = self.run, self.run.recorder
-        assert recorder is not None
-        recorder.states.clear()  # type: ignore[attr-defined]
-        run.corner = self._approach + place.cycle * len(self._cycle) - 1
+    def _states(self, place: Worn) -> tuple[Any, ...]:
+        corner = self._approach + place.cycle * len(self._cycle) - 1
         try:
-            run.step_to(run.load)
-            for given in self._cycle:
-                run.step_to(complete_load(given, run.load))
+            return self.run.states_over(self._cycle, corner, self._first.problem)
         except SolveError as error:
             _name_cycle(error, place.cycle + 1)
             raise
-        # A pin that loses contact is followed in a problem with the worn gap.
-        states = tuple(replace(each, problem=self._first.problem) for each in recorder.states)  # type: ignore[attr-defined]
-        recorder.states.clear()  # type: ignore[attr-defined]
-        return states
 
     def _fat(self, place: Worn, jump: int) -> Worn:
         after = self._with_gap(place, lambda start: self._followed(start, self._cycle, jump))
@@ -248,14 +288,14 @@ class FatCycles:
         """
         for start in (place, replace(place, loses_contact=True)):
             self._stand_at(start)
-            rest = self.run.now.rest
+            before = self.run.now
             try:
                 found = follow(start)
             except SolveError:
-                if start.loses_contact or self.run.now.rest is rest:
+                if start.loses_contact or not self.run.begins_anew_since(before):
                     raise
             else:
-                if start.loses_contact or self.run.now.rest is rest:
+                if start.loses_contact or not self.run.begins_anew_since(before):
                     break
         return found
 
@@ -278,7 +318,7 @@ class FatCycles:
 
         If much wears, the piece has parts, and the wear of each one is applied at its end.
         """
-        run, start, before = self.run, self.run.restart(shared=True), self.run.load
+        run, start, before = self.run, self.run.here(), self.run.load
         run.step_to(target, kept=False)
         parts = self._parts(start.configuration, jump) if jump else 1
         if parts > 1:
@@ -297,10 +337,12 @@ class FatCycles:
         SolveError
             If it would take more than :data:`MOST_PARTS`.
         """
-        depth = float(self.worn_by(self.run.corner_log.latest.slip_tally.sums, jump)[0].max())
-        weights = self.run.system.weights
-        force = max(float(weights @ before.pressure), float(weights @ self.run.now.pressure))
-        fast = depth / force if force else 0.0
+        depth, weights, fast = self.worn_by(self.run.latest.slip_tally.sums, jump)[0], self.run.system.weights, 0.0
+        for nodes in (rim.nodes for rim in self.run.system.interfaces):
+            both = before.pressure[nodes], self.run.now.pressure[nodes]
+            force = max(float(weights[nodes] @ pressure) for pressure in both)
+            part = float(depth[nodes].max()) / force if force else 0.0
+            fast = part if not part <= fast else fast
         if not fast <= MOST_PARTS * LARGEST_PART:
             raise SolveError(
                 f"wear is too fast: on the way to one corner it takes off {fast:.3g} times the elastic displacement "
@@ -310,7 +352,7 @@ class FatCycles:
 
     def _wear_off(self, place: Worn, sums: _Sums, jump: int) -> None:
         """Wear the contact where it is, by the slip since the last stop, and add all since then to the `sums`."""
-        run, piece, times = self.run, self.run.corner_log.latest, max(jump, 1)
+        run, piece, times = self.run, self.run.latest, max(jump, 1)
         sums.dissipation, sums.work = sums.dissipation + times * piece.dissipation, sums.work + times * piece.work
         if not jump:
             return
@@ -350,14 +392,27 @@ class FatCycles:
 
     def _check_depth(self, depth: np.ndarray) -> None:
         """Raise :class:`SolveError` if the worn depth (2, n) is too large for small strains."""
-        deepest = float(depth.sum(axis=0).max()) * self.run.system.scales.displacement
-        if not deepest <= self._deepest:
-            raise SolveError(
-                f"the worn depth {deepest:.3g} is too large for small strains: it must stay within {self._deepest:g}"
-            )
+        total, unit = depth.sum(axis=0), self.run.system.scales.displacement
+        for problem, nodes in ((rim.problem, rim.nodes) for rim in self.run.system.interfaces):
+            deepest, most = float(total[nodes].max()) * unit, MOST_GAP * problem.hole_radius
+            most = MOST_PARAMETER if problem.dimensionless else most
+            if not deepest <= most:
+                words = f"the worn depth {deepest:.3g} is too large for small strains: it must stay within {most:g}"
+                raise SolveError(words)
 
-    def _restart(self, dissipation: float = 0.0, work: float = 0.0) -> Restart:
-        return replace(self.run.restart(shared=True), dissipation=dissipation, work=work, slip_tally=NOT_COUNTED)
+    def _restart(self, dissipation: Energy = 0.0, work: float = 0.0) -> Any:
+        return replace(self.run.here(), dissipation=dissipation, work=work, slip_tally=NOT_COUNTED)
+
+
+def coefficients_at(system: System, wear: Wear) -> np.ndarray:
+    """Wear coefficients of the inner and the outer body at all nodes of a system, 1/Pa, shape (2, n).
+
+    A bush that slips is the outer body at the pin and the inner one in its seat.
+    """
+    found = np.zeros((2, system.grid.size))
+    for rim in system.interfaces:
+        found[:, rim.nodes] = wear.coefficients(rim.problem.hole_radius, rim.grid.theta)
+    return found
 
 
 def _name_cycle(error: SolveError, cycle: int) -> None:

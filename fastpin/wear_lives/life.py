@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -269,11 +269,7 @@ class WearTask:
     def _live(self, life: FatCycles, place: Worn, recorder: WearRecorder, stored: int = -1) -> None:
         """Follow all cycles from a place on. The recorder has the chosen cycles up to the cycle `stored`."""
         for target in (each for each in self.wear.chosen if each > stored):
-            while place.cycle < target:
-                place = life.next(place, target)
-                recorder.reached(place)
-                if self.progress is not None:
-                    self.progress(place.cycle, self.wear.cycles)
+            place = lived_to(life, place, target, recorder, self)
             cycle = self._worn_cycle(life, place)
             if place.cycle == 0:
                 warn_of(slip_doubts(self.coefficients(cycle.theta), cycle), 2)
@@ -289,3 +285,13 @@ class WearTask:
         dissipation, removed = place.restart.dissipation * scales.energy, place.removed * scales.energy
         states = life.states(place)
         return WornCycle(place.cycle, place.jump, place.solved, pin, plate, dissipation, removed, states)
+
+
+def lived_to(life: FatCycles, place: Worn, target: int, recorder: Any, how: Any) -> Worn:
+    """Follow cycles from a place on to the cycle `target`, and return the place there. `how` has wear and progress."""
+    while place.cycle < target:
+        place = life.next(place, target)
+        recorder.reached(place)
+        if how.progress is not None:
+            how.progress(place.cycle, how.wear.cycles)
+    return place

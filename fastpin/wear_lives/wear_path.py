@@ -8,18 +8,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from fastpin.elasticity.operator import Operator
 from fastpin.elasticity.system import System
+from fastpin.model.loads import complete_load
+from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, profile_of_nodes
 from fastpin.solver.configuration import Configuration, work_between
 from fastpin.solver.path_stepper import PathStepper
+from fastpin.solver.repeats import CornerEntry
 from fastpin.solver.rest import release
+from fastpin.solver.result import Restart
 from fastpin.solver.run import Run
 from fastpin.solver.step import Piece, Position
+from fastpin.states.state import State
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +35,8 @@ class Removal:
     ----------
     depth : ndarray, shape (n,)
         Growth of the gap at each node.
-    dissipation : float
-        Energy dissipated by the slip on the way.
+    dissipation : float or ndarray, shape (interfaces,)
+        Energy dissipated by the slip on the way; of a joint of several pins at each interface.
     work : float
         Work of the loads that are held.
     energy : float
@@ -39,7 +44,7 @@ class Removal:
     """
 
     depth: np.ndarray
-    dissipation: float
+    dissipation: Any
     work: float
     energy: float
 
@@ -52,6 +57,35 @@ class WearRun(Run):
     """
 
     wears: ClassVar[bool] = True
+
+    @property
+    def latest(self) -> CornerEntry:
+        """Slip tally and energies of the step that was followed last."""
+        return self.corner_log.latest
+
+    def here(self) -> Restart:
+        """The place at the last corner."""
+        return self.restart(shared=True)
+
+    def begins_anew_since(self, before: Configuration) -> bool:
+        """Whether the contact was lost since the configuration `before`, and has begun anew or will do so."""
+        return self.now.rest is not before.rest
+
+    def states_over(self, cycle: np.ndarray, corner: int, problem: Problem) -> tuple[State, ...]:
+        """The states over one cycle (corners, loads), SI, at its beginning and at its corners, without wear.
+
+        `corner` is the number of the corner from which it begins. The states get the `problem`: a pin that loses
+        contact is followed in one with the worn gap.
+        """
+        recorder: Any = self.recorder
+        recorder.states.clear()
+        self.corner = corner
+        self.step_to(self.load)
+        for given in cycle:
+            self.step_to(complete_load(given, self.load))
+        states = tuple(replace(each, problem=problem) for each in recorder.states)
+        recorder.states.clear()
+        return states
 
     def set_gap(self, first: System, worn: np.ndarray | None) -> None:
         """Let the next first contact see a gap that has grown by `worn` (n,), dimensionless, since the system `first`.

@@ -162,7 +162,7 @@ def test_a_displacement_does_not_drive_a_pin_in_a_bush_that_slips(drive: str) ->
 
 
 def test_wear_needs_a_bonded_bush() -> None:
-    words = "bonded: must be true, in an infinite plate or a ring: the wear in other bushes is not known"
+    words = "bonded: must be true, in an infinite plate or a ring: with another bush a joint of one pin wears"
     text = TEXT + "[wear]\ncoefficient = 1e-15\ncycles = 10\n"
     assert fault(text) == (line_of(text, "bonded"), words)
     Path("case.toml").write_text(TEXT, encoding="utf-8")

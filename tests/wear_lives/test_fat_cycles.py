@@ -198,7 +198,7 @@ def slid(clearance: float, steps: int) -> tuple[float, float, float]:
     step(run, {"P": 1.0})
     for number in range(1, steps + 1):
         step(run, {"rotation": 8.0 / coefficient * number / steps})
-        worn = worn + run.wear(*cycles.worn_by(run.corner_log.latest.slip_tally.sums, 1)).depth
+        worn = worn + run.wear(*cycles.worn_by(run.latest.slip_tally.sums, 1)).depth
     top = int(np.argmax(worn))
     below, middle, above = worn[top - 1 : top + 2]
     spacing, bend = float(run.system.weights[top]), 2.0 * middle - below - above

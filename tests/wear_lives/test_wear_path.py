@@ -59,7 +59,7 @@ def test_a_sawtooth_grows_beyond_the_limit_of_explicit_jumps(size, grows):
     run.wear(np.where(signs > 0.0, 1e-5, 0.0))
     for loads in 6 * case.cycle:
         rubbed, _ = step(run, loads)
-        most = run.corner_log.latest.slip_tally.sums[0].max()
+        most = run.latest.slip_tally.sums[0].max()
         run.wear(size * run.system.weights[20] / (2.0 * np.pi) / most * rubbed)
     sawtooth = abs((signs[1:-1] * np.diff(run.now.pressure, 2))[16:25].mean())
     assert sawtooth > 0.1 if grows else sawtooth < 1e-3
@@ -147,7 +147,7 @@ def test_the_tally_of_wear_is_friction_energy_over_friction():
     run = wearing(case.problem, case.grid(61))
     for loads in (*case.first, *case.cycle):
         step(run, loads)
-        sums = run.corner_log.latest.slip_tally.sums
+        sums = run.latest.slip_tally.sums
         assert np.allclose(0.2 * sums[4], sums[1], rtol=1e-14, atol=0.0)
     assert sums[4].max() > 0.1
 
