@@ -303,6 +303,8 @@ def _depths(cycles: Sequence[StoredCycle], body: Body, worn: float) -> np.ndarra
     far = far_rim(problem, body)
     if far is not None:
         below = min(below, 0.5 * abs(far - near_rim(problem, body)) * problem.hole_radius)  # not the force in the pin
+    if body != "pin" and np.isfinite(known := problem.plate_body.lug.reach):
+        below = min(below, (known * problem.joint.seat_ratio - near_rim(problem, body)) * problem.hole_radius)
     inside, beyond = np.linspace(0.0, worn, 9), np.linspace(0.0, 1.0, 17) ** 2
     return np.unique(np.r_[inside, worn + (below - worn) * beyond])
 

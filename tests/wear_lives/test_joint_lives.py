@@ -16,7 +16,7 @@ from fastpin.bodies import Bushing
 from fastpin.cli.main import main
 from fastpin.joints import Joint, JointPin, parse_joint, solve_joint
 from fastpin.joints.solving import JointMatrices, JointTask, reference_force
-from fastpin.model import Wear
+from fastpin.model import FatigueAssessment, Wear
 from fastpin.model.angles import BOTTOM
 from fastpin.report import json_schema
 from fastpin.wear_lives import JointWearResult, wear_joint
@@ -157,6 +157,23 @@ def test_fat_cycles_keep_their_promise() -> None:
     for one, other in zip(every[1:], fat[1:], strict=True):
         for mine, theirs in zip(one.contacts, other.contacts, strict=True):
             assert np.abs(mine.gap_growth - theirs.gap_growth).max() < 0.1 * one.depth
+
+
+@pytest.mark.gate
+def test_the_life_of_one_hole_has_the_fatigue_of_a_pin(tmp_path: Path) -> None:
+    """Material points lie where the stress beside the hole is known. The life without wear is that of the joint."""
+    sheet = replace(SHEET, material=fastpin.MATERIALS["2024-T3"], thickness=2e-3)
+    pins = [JointPin(name, at, STEEL, 2.5e-3, ("sheet",), 5e-6, 0.3) for name, at in (("A", -8e-3), ("B", 8e-3))]
+    joint, pulses = Joint((sheet,), tuple(pins)), [{"A.y": -size, "B.y": -size} for size in (4e3, 0.4e3)] * 2
+    life = wear_joint(joint, pulses, Wear(pin=1e-15, plate=4e-15, cycles=1e4, at=[1000], tolerance=0.1), nodes=24)
+    hole = life.of("A", "sheet")
+    found = hole.fatigue("smith-watson-topper", "plate", depth=[0.0, 0.2e-3])
+    assert hole.fatigue("smith-watson-topper", "plate", theta=[0.0, 3.0]).depth[-1] > 0.3e-3
+    first = solve_joint(joint, pulses, nodes=24).assessed_fatigue(FatigueAssessment(over="cycle"))
+    at_hole = next(each.found for each in first if (each.pin, each.found.body) == ("A", "plate"))
+    assert found.first_life == pytest.approx(at_hole.hot_spot.life, rel=1e-3)
+    hole.plot(tmp_path / "scar.svg", kind="scar")
+    assert (tmp_path / "scar.svg").stat().st_size > 1000
 
 
 def test_wear_that_is_too_fast_or_too_deep_is_refused() -> None:
