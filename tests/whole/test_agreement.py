@@ -15,7 +15,7 @@ from fastpin.assess.wear import cycle_columns, cycles_curve, scar_curves
 from fastpin.model import FatigueAssessment
 from fastpin.model.case import beside_of
 from fastpin.model.units import units
-from fastpin.pages.sections import asked, fatigue
+from fastpin.pages.sections import asked
 from fastpin.pages.source import margins
 from fastpin.pages.wear import damage, numbers, overview
 from fastpin.states.quantities import QUANTITIES
@@ -168,7 +168,7 @@ def test_the_json_of_a_file_is_that_of_memory(told: Told, document: dict[str, An
 def test_a_page_says_what_the_text_says(
     told: Told, document: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fastpin.pages.result.SECTIONS", (margins, fatigue, asked("crack"), asked("strength")))
+    monkeypatch.setattr("fastpin.pages.result.SECTIONS", (margins, *map(asked, ("fatigue", "crack", "strength"))))
     page = words_of(told.stored, tmp_path / "page.html")
     for line in judged(told.out):
         assert f"{line[0].upper()}{line[1:]}." in page
