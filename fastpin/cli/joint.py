@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import sys
 from functools import partial
+from pathlib import Path
 from typing import Any
 
-from fastpin import figures, joints, report, storage
+from fastpin import figures, joints, live, report, storage
 from fastpin.assess import outputs
 from fastpin.cli import terminal
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
@@ -39,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
     if path is None and len(case.corners) > MOST_IN_MEMORY:
         words = f"is needed: the history has {len(case.corners):,} corners, more than {MOST_IN_MEMORY:,}"
         raise InputError("--output", words)
-    code, given = terminal.EXIT_OK, ["resume", *(() if options.nodes is None else ("nodes",))]
+    code, error, given = terminal.EXIT_OK, "", ["resume", *(() if options.nodes is None else ("nodes",))]
     try:
         with Bar(len(case.corners), LOAD_POINTS) as bar, terminal.as_options(given):
             progress = progress_to(bar)
@@ -53,16 +54,17 @@ def run(options: argparse.Namespace) -> int:
     except (SolveError, Interrupted) as ended:
         code = terminal.EXIT_INTERRUPTED if isinstance(ended, Interrupted) else terminal.EXIT_FAILED
         more = "" if path is None else f"; go on with: fastpin joint --resume {path}"
-        terminal.fail(f"{str(ended) or 'interrupted'}{more if isinstance(ended, Interrupted) else ''}", code)
+        error = str(ended) or "interrupted"
+        terminal.fail(f"{error}{more if isinstance(ended, Interrupted) else ''}", code)
         if ended.result is None or not len(ended.result):
             return code
         result = ended.result  # type: ignore[assignment]
-    return _write(case, result, options) or code
+    return _write(case, result, options, error) or code
 
 
 def show(stored: storage.stored.StoredResult, options: argparse.Namespace) -> int:
     """Print and draw the stored result of a joint."""
-    for name in ("states", "cycles", "cycle_csv", "record"):
+    for name in ("states", "cycles", "cycle_csv"):
         if getattr(options, name) is not None:
             raise InputError(terminal.flag(name), "is for the result of one pin, not of a joint")
     if options.interface != "pin":
@@ -71,27 +73,33 @@ def show(stored: storage.stored.StoredResult, options: argparse.Namespace) -> in
     _check(options, max(len(result), 1), {})
     if not len(result):
         terminal.say("no state was reached")
-    return _write(case, result, options) if len(result) else terminal.EXIT_OK
+    return _write(case, result, options, stored.error or "") if len(result) else terminal.EXIT_OK
 
 
 def _check(options: argparse.Namespace, corners: int, result: dict[str, Any]) -> None:
     """Check before the work that all files can be written, and the load point of a figure."""
     figure_files = {"--plot": options.plot, "--shares": options.shares}
-    terminal.check_outputs({**figure_files, "--json": options.json, **result}, tuple(figure_files), "--output")
+    files = {**figure_files, "--json": options.json, "--record": options.record, **result}
+    terminal.check_outputs(files, tuple(figure_files), "--output")
     if options.at is not None:
         whole_number("--at", options.at, 1, corners)
         if options.plot is None:
             raise InputError("--at", "chooses the load point of a figure: it needs --plot FILE")
 
 
-def _write(case: joints.JointFile, result: joints.JointResult, options: argparse.Namespace) -> int:
-    """Write the files of a result, then print it."""
+def _write(case: joints.JointFile, result: joints.JointResult, options: argparse.Namespace, error: str) -> int:
+    """Write the files of a result, then print it. `error` is why the history ended early."""
     is_complete = len(result) == len(case.corners)
     if not is_complete:
         terminal.say(f"note: {len(result)} of {len(case.corners)} load points were reached", file=sys.stderr)
     last = min(options.at or len(result), len(result))
     draws = {options.plot: partial(figures.plot_joint, state=last - 1), options.shares: figures.plot_shares}
-    files = [(name, partial(draw, result, title=case.title)) for name, draw in draws.items()]
+    files: list[Any] = [(name, partial(draw, result, title=case.title)) for name, draw in draws.items()]
+
+    def record(path: Path) -> None:
+        terminal.write_text(path, live.record_joint_page(case, result, error))
+
+    files.append((options.record, record))
     asked = {"margins": True, "fatigue": case.fatigue, "crack": case.crack}
     with Bar(1.0, ", ".join(name for name, how in asked.items() if how)) as bar:
         judged = report.joints.judged(result, case.fatigue, is_complete, progress_to(bar), case.crack)

@@ -429,6 +429,7 @@ def add_joint(commands: Any) -> None:
     _option(joint, "--resume", "FILE", "go on with the HDF5 file of a joint that ended early", Path)
     _option(joint, "--plot", "FILE", "draw all holes at a load point (png, pdf, svg)", Path)
     _add_of_joint(joint)
+    _option(joint, "--record", "FILE", "write a page (html) that replays the states", Path)
     _add_json(joint, "write all states as JSON")
 
 

@@ -92,7 +92,7 @@ class HoleInPlate(Compliance):
 
     @property
     def geometry(self) -> Any:
-        return self.without_others.geometry
+        return self.without_others.geometry if self.outline else None
 
     @property
     def other_edges(self) -> Any:

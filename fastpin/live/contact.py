@@ -99,6 +99,10 @@ class LiveContact(ABC):
         """Nodes of a message, which are allowed for one pin, after their check."""
         return nodes
 
+    def checked_loads(self, loads: dict[str, float]) -> dict[str, float]:
+        """Loads of a message after a check of their sizes, beside the checks of the session."""
+        return loads
+
     @abstractmethod
     def _new_session(self) -> Any:
         """A session of the present problem, with the present number of nodes, without a load."""
@@ -178,7 +182,7 @@ class LiveContact(ABC):
     # -- messages --------------------------------------------------------------------------------------------------
 
     def _obey_load(self, loads: dict[str, float], gesture: int) -> None:
-        is_new = gesture != self._gesture
+        loads, is_new = self.checked_loads(loads), gesture != self._gesture
         mark = self._lasting_mark() if is_new else None
         self._step(self.session, loads, gesture)
         if mark is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -21,8 +22,8 @@ from fastpin.live.contact import Answer, LiveContact
 from fastpin.live.controls import ControlScales
 from fastpin.live.pictures import picture
 from fastpin.live.pin import MOST_PLAYED, case_document
-from fastpin.model import LoadHistory
-from fastpin.model.checks import whole_number
+from fastpin.model import Grid, LoadHistory
+from fastpin.model.checks import number, whole_number
 from fastpin.model.unit_systems import SI
 from fastpin.model.units import in_other_units
 from fastpin.report.joints import joint_units
@@ -34,6 +35,96 @@ NODES = 64
 
 MOST_OF_ALL = 2_000
 """Nodes of all contacts together. The matrices of so many take 130 MB."""
+
+
+MOST_TIMES = 1e6
+"""Largest load in parts of a usual one. From 1e15 usual loads the way back takes minutes."""
+
+
+class JointPictures:
+    """The document and the pictures of a joint file for the page.
+
+    Parameters
+    ----------
+    file : JointFile
+
+    Attributes
+    ----------
+    file : JointFile
+    largest : dict of str to float
+        The largest size of each load of the history, SI.
+    usual : dict of str to float
+        A usual load of each kind, SI: the largest of the history, or one that causes or follows from those.
+    """
+
+    def __init__(self, file: JointFile) -> None:
+        joint = file.joint
+        largest = np.abs(load_values(joint, file.corners)).max(axis=0).tolist()
+        of = dict(zip(joint.load_names, largest, strict=True))
+        self.file, self.largest = file, {name: of[name] for name in joint.given_names}
+        self.usual = {"force": 0.0, "traction": 0.0, "displacement": 0.0}
+        for name, size in self.largest.items():
+            self.usual[joint.load_kind(name)] = max(size, self.usual[joint.load_kind(name)])
+        force, stress, displacement = self.usual.values()
+        area, modulus = 2.0 * joint.radius * joint.plates[0].thickness, joint.plates[0].material.E
+        soft = joint.problem(*joint.sections[0]).surfaces.beta_star / joint.plates[0].thickness
+        force = force or stress * area or displacement / soft or 1e-3 * modulus * area  # a usual strain
+        self.usual = {"force": force, "traction": stress or force / area, "displacement": displacement or force * soft}
+
+    def size(self, load: str) -> float:
+        """The largest size of a load in the history, or a usual one, SI."""
+        return self.largest[load] or self.usual[self.file.joint.load_kind(load)]
+
+    def _history_in(self, plate: JointPlate) -> LoadHistory:
+        """A usual load of a pin in a plate."""
+        return LoadHistory([{"P": self.usual["force"] / plate.thickness}])
+
+    def picture(self, state: JointState, serial: int, gesture: int, grid_name: Callable[[Grid], str]) -> Answer:
+        """The picture of a state: one of each hole, as of one pin, and what belongs to the whole joint."""
+        joint, moving = state.joint, [plate.name for plate in state.joint.plates if plate.moves]
+        moved = dict(zip([plate.name for plate in joint.plates], state.moved.tolist(), strict=True))
+        lost = [
+            plate.thickness * one.dissipation
+            for (_, plate), contact in zip(joint.sections, state.contacts, strict=True)
+            for one in (contact, contact.seat)
+            if one is not None
+        ]
+        found = {
+            "serial": serial, "gesture": gesture, "load": state.load,
+            "forces": state.forces.tolist(),
+            "shares": {plate.name: state.shares(plate.name) for plate in joint.plates},
+            "moved": {name: row for name, row in moved.items() if name in moving},
+            "faying": [[str(one), *at.force.tolist()] for one, at in zip(joint.faying, state.faying, strict=True)],
+            "dissipation": sum(lost) + sum(each.dissipation for each in state.faying),
+            "residual": max(state.residuals.values()),
+        }  # fmt: skip
+        holes = []
+        for (_, plate), contact in zip(joint.sections, state.contacts, strict=True):
+            of_kind = sizes(contact)
+            small = {"P": of_kind["force"], "Q": of_kind["force"], "M": of_kind["moment"]}
+            rounding = {name: 0.0 for name, size in small.items() if abs(contact.load[name]) <= ROUNDING * size}
+            shown = replace(contact, load=contact.load | rounding)  # what is read from a state stays in it
+            holes.append(picture(shown, serial, gesture, grid_name(contact.grid), self._history_in(plate)))
+        answer: Answer = json_ready(found)
+        return answer | {"holes": holes}
+
+    def document(self, nodes: int) -> Answer:
+        """The joint, its controls and its loads."""
+        joint, unit = self.file.joint, {kind: asdict(each) for kind, each in joint_units(self.file.joint).items()}
+        loads = [{"name": name, "unit": unit[joint.load_kind(name)], "size": self.size(name)} for name in self.largest]
+        holes = []
+        for pin, plate in joint.sections:
+            problem = joint.problem(pin, plate)
+            of = case_document("", problem, ControlScales(problem, self._history_in(plate)))
+            where = {"pin": pin.name, "plate": plate.name, "whole": whole_name(plate.name)}
+            holes.append(of | where | {"at": [pin.at.real, pin.at.imag], "edge": pin.hole_radius(plate.name)})
+        for hole in holes:
+            hole["controls"] = []
+        return {
+            "title": self.file.title, "units": unit, "prefixes": holes[0]["prefixes"], "holes": holes, "loads": loads,
+            "controls": [], "axes": [], "nodes": nodes, "most_nodes": most_nodes(joint),
+            "plates": [_plate(plate) for plate in joint.plates], "history": self.file.corners[:MOST_PLAYED],
+        }  # fmt: skip
 
 
 class LiveJoint(LiveContact):
@@ -54,22 +145,17 @@ class LiveJoint(LiveContact):
     """
 
     def __init__(self, file: JointFile, text: str, nodes: int | None = None) -> None:
-        joint = file.joint
-        self._file, self._text = file, text
-        self.most_nodes = most_nodes(joint)
-        nodes = min(NODES, self.most_nodes) if nodes is None else self.checked_nodes(nodes)
-        largest = np.abs(load_values(joint, file.corners)).max(axis=0).tolist()
-        of = dict(zip(joint.load_names, largest, strict=True))
-        self._largest = {name: of[name] for name in joint.given_names}
-        pictures = max(protocol.MOST_OF_HOLES // len(interfaces_of(joint)), 1)
-        super().__init__(self._session(nodes), nodes, file.corners[0], pictures)
+        self._file, self._text, self._of = file, text, JointPictures(file)
+        self._interfaces = len(interfaces_of(file.joint))
+        nodes = min(NODES, most_nodes(file.joint)) if nodes is None else self.checked_nodes(nodes)
+        super().__init__(self._session(nodes), nodes, file.corners[0], most_steps(file.joint))
 
     def checked_nodes(self, nodes: int) -> int:
-        return whole_number("nodes", nodes, LEAST_NODES, self.most_nodes)
+        return whole_number("nodes", nodes, LEAST_NODES, most_nodes(self._file.joint))
 
     def _session(self, nodes: int) -> JointSession:
         joint, file = self._file.joint, self._file
-        return JointSession(joint, nodes, harmonics=file.harmonics, expected=[self._largest], undo=0)
+        return JointSession(joint, nodes, harmonics=file.harmonics, expected=[self._of.largest], undo=0)
 
     def _new_session(self) -> JointSession:
         return self._session(self._nodes)
@@ -80,14 +166,20 @@ class LiveJoint(LiveContact):
 
     @property
     def _size(self) -> int:
-        return 0 if self.session.state is None else len(interfaces_of(self._file.joint)) * self._nodes
+        return 0 if self.session.state is None else self._interfaces * self._nodes
 
     @property
     def _allowed(self) -> set[str]:
-        return set(self._largest)
+        return set(self._of.largest)
 
     def _begin(self, loads: dict[str, float], gesture: int) -> None:
         self._step(self.session, loads, gesture)
+
+    def checked_loads(self, loads: dict[str, float]) -> dict[str, float]:
+        for name in self._allowed.intersection(loads):
+            most = MOST_TIMES * self._of.size(name)
+            number(name, loads[name], -most, most)
+        return loads
 
     def _rows(self, follow: str) -> list[dict[str, float]]:
         rows = self.session.history or []
@@ -96,84 +188,20 @@ class LiveJoint(LiveContact):
     def _obey_change(self, changes: dict[str, Any], follow: str, gesture: int) -> None:
         raise InputError(min(changes), "is no control of the page of a joint: it has loads and nodes")
 
-    @property
-    def _usual(self) -> dict[str, float]:
-        """A usual load of each kind, SI: the largest of the history, or one that causes or follows from those."""
-        joint, largest = self._file.joint, {"force": 0.0, "traction": 0.0, "displacement": 0.0}
-        for name, size in self._largest.items():
-            largest[joint.load_kind(name)] = max(size, largest[joint.load_kind(name)])
-        plate, soft = joint.plates[0], joint.problem(*joint.sections[0]).surfaces.beta_star
-        area, soft = 2.0 * joint.radius * plate.thickness, soft / plate.thickness
-        force = largest["force"] or largest["traction"] * area or largest["displacement"] / soft
-        force = force or 1e-3 * plate.material.E * area  # a usual strain
-        return {
-            name: size or found
-            for (name, size), found in zip(largest.items(), (force, force / area, force * soft), strict=True)
-        }
-
-    def _history_in(self, plate: JointPlate) -> LoadHistory:
-        """A usual load of a pin in a plate."""
-        return LoadHistory([{"P": self._usual["force"] / plate.thickness}])
-
     def _picture(self, state: JointState, serial: int, gesture: int) -> Answer:
-        """The picture of a state: one of each hole, as of one pin, and what belongs to the whole joint."""
-        joint, moving = state.joint, [plate.name for plate in state.joint.plates if plate.moves]
-        moved = dict(zip([plate.name for plate in joint.plates], state.moved.tolist(), strict=True))
-        each = zip(joint.sections, state.contacts, strict=True)
-        lost = [
-            plate.thickness * one.dissipation
-            for (_, plate), contact in each
-            for one in (contact, contact.seat)
-            if one is not None
-        ]
-        found = {
-            "serial": serial, "gesture": gesture, "load": state.load,
-            "forces": state.forces.tolist(),
-            "shares": {plate.name: state.shares(plate.name) for plate in joint.plates},
-            "moved": {name: row for name, row in moved.items() if name in moving},
-            "faying": [[str(one), *at.force.tolist()] for one, at in zip(joint.faying, state.faying, strict=True)],
-            "dissipation": sum(lost) + sum(each.dissipation for each in state.faying),
-            "residual": max(state.residuals.values()),
-        }  # fmt: skip
-        sections = zip(joint.sections, state.contacts, strict=True)
-        holes = []
-        for (_, plate), contact in sections:
-            of_kind = sizes(contact)
-            small = {"P": of_kind["force"], "Q": of_kind["force"], "M": of_kind["moment"]}
-            rounding = {name: 0.0 for name, size in small.items() if abs(contact.load[name]) <= ROUNDING * size}
-            shown = replace(contact, load=contact.load | rounding)  # what is read from a state stays in it
-            holes.append(picture(shown, serial, gesture, self._grid_name(contact.grid), self._history_in(plate)))
-        answer: Answer = json_ready(found)
-        return answer | {"holes": holes}
+        return self._of.picture(state, serial, gesture, self._grid_name)
 
     def _case_document(self) -> Answer:
-        joint, unit = self._file.joint, {kind: asdict(each) for kind, each in joint_units(self._file.joint).items()}
-        kinds, usual = {name: joint.load_kind(name) for name in self._largest}, self._usual
-        loads = [
-            {"name": name, "unit": unit[kind], "size": self._largest[name] or usual[kind]}
-            for name, kind in kinds.items()
-        ]
-        holes = []
-        for pin, plate in joint.sections:
-            problem = joint.problem(pin, plate)
-            of = case_document("", problem, ControlScales(problem, self._history_in(plate)))
-            where = {"pin": pin.name, "plate": plate.name, "whole": whole_name(plate.name)}
-            holes.append(of | where | {"at": [pin.at.real, pin.at.imag], "edge": pin.hole_radius(plate.name)})
-        for hole in holes:
-            hole["controls"] = []
-        return {
-            "title": self._file.title, "units": unit, "prefixes": holes[0]["prefixes"], "holes": holes, "loads": loads,
-            "controls": [], "axes": [], "nodes": self._nodes, "most_nodes": self.most_nodes,
-            "plates": [_plate(plate) for plate in joint.plates], "history": self._file.corners[:MOST_PLAYED],
-        }  # fmt: skip
+        return self._of.document(self._nodes)
 
     def case_text(self) -> str:
-        """The joint and the history so far as a joint file, with the present nodes. It asks for no lives and cracks."""
+        """The joint and the history so far as a joint file, with the present nodes, without lives, cracks and wear."""
         rows = self.session.history
         if rows is None:
             raise InputError("case", "no load was followed yet")
         source = CaseText(self._text)
-        tables = {name: table for name, table in source.root.table.items() if name not in ("load", "fatigue", "crack")}
+        left_out = "load", "fatigue", "crack", "wear"
+        tables = {name: table for name, table in source.root.table.items() if name not in left_out}
         own = tables.get("units", SI)
         kinds = kinds_in(source.with_tables({"load": rows}))
         acting = [name for name in rows[0] if any(row[name] for row in rows)] or list(rows[0])[:1]
@@ -191,6 +219,11 @@ class LiveJoint(LiveContact):
                     [head, *(f"{key} = {toml_value(table[at])}" for key, at in zip(keys, table, strict=True))]
                 )
         return "\n\n".join("\n".join(block) for block in blocks if block) + "\n"
+
+
+def most_steps(joint: Joint) -> int:
+    """Most states of a joint whose pictures are remembered."""
+    return max(protocol.MOST_OF_HOLES // len(interfaces_of(joint)), 1)
 
 
 def most_nodes(joint: Joint) -> int:

@@ -1,4 +1,4 @@
-"""Recordings in one HTML file: of the states of a finished run, and of a life of wear with a slider of cycles."""
+"""Recordings in one HTML file: of the states of a finished run or joint, and of a life of wear with its cycles."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ from fastpin.assess.outputs import json_ready
 from fastpin.assess.wear import DEBRIS, damages
 from fastpin.damage import WornFatigue
 from fastpin.errors import InputError
+from fastpin.joints import JointFile, JointResult
 from fastpin.live.controls import ControlScales
+from fastpin.live.joint import JointPictures, most_steps
 from fastpin.live.page import recorded_page
 from fastpin.live.pictures import packed, picture
 from fastpin.live.pin import case_document
 from fastpin.live.protocol import MOST_PICTURES
-from fastpin.model import angles, points
+from fastpin.model import Grid, angles, points
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
 from fastpin.model.checks import instance, instances, string, whole_number
@@ -64,6 +66,36 @@ def record_page(case: Case, states: Sequence[State], sentence: str = "") -> str:
     pictures = [picture(state, serial, state.step, "0", case.history) for serial, state in enumerate(chosen, start=1)]
     document = case_document(case.title, case.problem, ControlScales(case.problem, case.history))
     return _recorded(document, chosen[0].theta, sentence, pictures)
+
+
+def record_joint_page(file: JointFile, result: JointResult, sentence: str = "") -> str:
+    """The text of an HTML file that replays the states of a joint, without server and network.
+
+    Of more than :data:`fastpin.live.protocol.MOST_OF_HOLES` pictures of holes an even choice of the states is taken.
+
+    Parameters
+    ----------
+    file : JointFile
+        That of the result.
+    result : JointResult
+        In memory or from a file.
+    sentence : str
+        A remark above the page, such as why the history ended early.
+
+    Raises
+    ------
+    InputError
+        If there is no state, or an argument is of another class.
+    """
+    instance("file", file, JointFile, "a JointFile")
+    instance("result", result, JointResult, "a JointResult")
+    string("sentence", sentence)
+    if not len(result):
+        raise InputError("result", "there is no state to record")
+    of, states = JointPictures(file), (result[at] for at in recorded_places(len(result), most_steps(file.joint)))
+    pictures = [of.picture(state, serial, state.step, lambda grid: "0") for serial, state in enumerate(states, start=1)]
+    theta = Grid.circle(result.nodes, angles.BOTTOM).theta
+    return _recorded(of.document(result.nodes), theta, sentence, pictures)
 
 
 def record_life(

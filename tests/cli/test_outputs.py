@@ -57,7 +57,7 @@ TEXTS: dict[str, dict[str, str]] = {
     "tolerances": {"--table": ".csv", "--plot": ".png", "--scatter": ".svg", "--json": ".json"},
     "identify": {"--csv": ".csv", "--json": ".json", "--plot": ".png"},
     "compliance": {"--output": ".json", "--plot": ".png"},
-    "joint": {"--json": ".json", "--plot": ".png", "--shares": ".svg"},
+    "joint": {"--json": ".json", "--plot": ".png", "--shares": ".svg", "--record": ".html"},
     "benchmarks": {"--json": ".json"},
     "charts": {"--json": ".json", "--csv": ".csv"},
     "verify": {"--json": ".json"},

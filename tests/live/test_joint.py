@@ -15,6 +15,7 @@ from fastpin.joints import parse_joint, solve_joint
 from fastpin.live import protocol
 from fastpin.live.joint import MOST_OF_ALL, LiveJoint, most_nodes
 from fastpin.live.page import recorded_page
+from fastpin.live.recording import record_joint_page
 from fastpin.live.server import Server
 from tests.support.laps import SHEETS
 from tests.support.live_pages import Page, Wire, floats, in_a_loop, recorded
@@ -111,7 +112,7 @@ def test_undo_reset_reference_and_nodes() -> None:
 
 BAD: list[tuple[str, dict[str, Any], str]] = [
     ("load", {"loads": {"Z.x": 1.0}}, 'corner 1: must be "sheet.sxx"'),
-    ("load", {"loads": {"A.x": 1e300}}, "A.x: must lie between -1e+50 and 1e+50, not 1e+300"),
+    ("load", {"loads": {"A.x": 1e300}}, "A.x: must lie between -4e+09 and 4e+09, not 1e+300"),
     ("change", {"changes": {"friction": 0.1}}, "friction: is no control of the page of a joint"),
     ("nodes", {"nodes": 12}, "nodes: must be a whole number from 16 to 720, not 12"),
     ("nodes", {"nodes": 721}, "nodes: must be a whole number from 16 to 720, not 721"),
@@ -210,6 +211,28 @@ def test_a_recording_holds_all_holes() -> None:
     found = recorded(recorded_page(page.live.recording()))
     assert found["add"] == json.loads(json.dumps(page.pictures))
     assert [hole["pin"] for hole in found["case"]["holes"]] == ["A", "B"]
+
+
+@pytest.mark.gate
+def test_the_command_records_a_joint_and_shows_it(tmp_path, monkeypatch, capsys) -> None:
+    path, stored, pages = tmp_path / "joint.toml", tmp_path / "joint.h5", [tmp_path / f"{k}.html" for k in range(2)]
+    path.write_text(SHEETS, encoding="utf-8")
+    assert main(["joint", str(path), "-o", str(stored), "--record", str(pages[0])]) == 0
+    assert main(["show", str(stored), "--record", str(pages[1])]) == 0
+    first, again = (recorded(page.read_text(encoding="utf-8")) for page in pages)
+    assert (first["add"], first["grids"]) == (again["add"], again["grids"])
+    assert [picture["load"]["A.x"] for picture in first["add"]] == [4e3, 1e3]
+    live = LiveJoint(parse_joint(SHEETS), SHEETS, 24)
+    assert first["add"][0]["holes"][1]["shear"] == live.recording()["add"][0]["holes"][1]["shear"]
+    assert main(["joint", str(path), "--record", "page.pdf"]) == 2
+    assert "--record: must be the name of a page, which ends in .html" in capsys.readouterr().err
+    monkeypatch.setattr(protocol, "MOST_OF_HOLES", 2)
+    case = parse_joint(SHEETS)
+    result = solve_joint(case.joint, [*case.corners, {"A.x": 0.0}], nodes=16)
+    found = recorded(record_joint_page(case, result, "lost"))
+    assert ([picture["load"]["A.x"] for picture in found["add"]], found["sentence"]) == ([4e3, 0.0], "lost")
+    with pytest.raises(fastpin.InputError, match="result: must be a JointResult"):
+        record_joint_page(case, [])
 
 
 @in_a_loop

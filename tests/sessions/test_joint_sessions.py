@@ -204,7 +204,9 @@ def test_a_first_load_may_be_lost() -> None:
     assert session.advance({"p0.x": 0.1 * FORCE}).contacts[0].in_contact
 
 
-@pytest.mark.parametrize("loads", [{"p0.x": np.nan}, {"p0.x": "1"}, {"p0.z": 1.0}, {1: 1.0}, [("p0.x", 1.0)], None])
+@pytest.mark.parametrize(
+    "loads", [{"p0.x": np.nan}, {"p0.x": "1"}, {"p0.x": 1e300}, {"p0.z": 1.0}, {1: 1.0}, [("p0.x", 1.0)], None]
+)
 def test_wrong_loads_get_the_sentence_of_solve_joint(loads: Any) -> None:
     session = JointSession(PAIR, 16)
     assert refused(session.advance, loads).args == refused(solve_joint, PAIR, [loads], nodes=16).args
