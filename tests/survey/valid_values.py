@@ -28,6 +28,7 @@ from fastpin import (
     report,
     sessions,
     studies,
+    wear_lives,
 )
 from fastpin.assess.outputs import Curve
 from fastpin.errors import FastpinError
@@ -175,6 +176,8 @@ class Valid:
         jointed = fastpin.storage.record_joint(
             joints.JointFile(PAIRED, [{"a.x": 1e6}, {"a.x": 0.0}], nodes=16), "joint.h5"
         )
+        pulses = [{"a.x": 1e6}, {"a.x": 1e5}] * 2
+        jointed_life = wear_lives.wear_joint(PAIRED, pulses, model.Wear(1e-14), nodes=16)
         led = sessions.JointSession(PAIRED, nodes=16)
         led.advance({"a.x": 1e6})
         led.advance({"a.x": 1e5})
@@ -209,7 +212,8 @@ class Valid:
             fastpin.Session,
             model.Profile.ellipse(1e-5), model.InitialGap(pin=model.Profile.lobes(3, 1e-5)), model.Wear(1e-14), life,
             model.FatigueAssessment(),
-            life[-1], worn, worn.crack, crack, law, grown, cracks.stress_intensity(state, crack, [length]), NASGRO,
+            life[-1], jointed_life, jointed_life[-1],
+            worn, worn.crack, crack, law, grown, cracks.stress_intensity(state, crack, [length]), NASGRO,
             cracks.growth_along_edge(result, law, length, 2.0 * length, [-1.5]), planned,
             cracks.spectrum_growth(result, crack, law, length, 2.0 * length), cracks.CrackFate.STOPS,
             LAMINATE, PLY, PLY.strengths, damage.ply_failure(LAMINATE, [1e8, 1e7, 1e7]),
@@ -349,6 +353,11 @@ class Valid:
             "JointPin.value_in.name": "friction",
             "JointPin.value_in.plate": "sheet",
             "JointPin.gap_in.plate": "sheet",
+            "wear_joint.corners": [{"a.x": 1e6}, {"a.x": 1e5}] * 2,
+            "wear_joint.nodes": 16,
+            "JointWearResult.of.pin": "a",
+            "JointWearResult.of.plate": "sheet",
+            "cycles_to.depth": 1e-9,
             "JointResult.of.pin": "a",
             "JointResult.of.plate": "sheet",
             "shares.plate": "sheet",
