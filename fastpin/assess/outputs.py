@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
 from pathlib import Path
@@ -16,7 +16,7 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom
 from fastpin.model.problem import Problem
-from fastpin.model.units import DEGREE, Unit, units
+from fastpin.model.units import DEGREE, PLAIN, Unit, units
 from fastpin.states.margins import Margin
 from fastpin.storage.files import replacing
 from fastpin.version import __version__
@@ -29,6 +29,9 @@ Follow = Callable[[float, float], None]
 
 ROUNDING = 1e-9
 """Values and differences below this part of the largest of their kind are rounding. They are shown as 0."""
+
+PERCENT = Unit(100.0, "%")
+"""The unit of shares in tables."""
 
 NUMBER: Schema = {"type": "number"}
 
@@ -46,12 +49,6 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 MAX_ROWS = 40
 """Most lines of a printed table, below its head."""
 
-LEAST_REPEATED = 3
-"""Least rows that one line replaces: of fewer rows the table is as short."""
-
-LONGEST_PERIOD = 1_000
-"""Most rows of a period that is looked for: a table of more rows is cut before it repeats itself."""
-
 Column = tuple[str, str, list[str]]
 """A column of a table: its name, its unit and its cells."""
 
@@ -65,7 +62,8 @@ class Output(NamedTuple):
         Its key in JSON.
     kind : str
         A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad), "class", "text",
-        "texts", "whole", "truth", or "" for a plain number. Of an output with parts: "list", "map" or "".
+        "texts", "whole", "truth", "share" (in tables in %), or "" for a plain number. Of an output with parts: "list",
+        "map" or "".
     of : callable, optional
         Gives its value for a subject, in SI units: a number, an array, or a text. Unless given, it is the attribute or
         the key `name` of the subject.
@@ -87,6 +85,10 @@ class Output(NamedTuple):
         The JSON schema of a value that is JSON-ready already, also where it is null.
     may_lack : bool
         Whether JSON lacks it where the value is None.
+    digits : str
+        The format of a number in tables.
+    unknown : str
+        Its cell in tables where a whole number is None.
     """
 
     name: str
@@ -101,6 +103,8 @@ class Output(NamedTuple):
     parts: Sequence[Output] = ()
     form: Schema | None = None
     may_lack: bool = False
+    digits: str = ".5g"
+    unknown: str = "-"
 
     def value(self, subject: Any) -> Any:
         """The value of a subject in SI units."""
@@ -139,6 +143,19 @@ class Output(NamedTuple):
         heading = self.heading or self.name.replace("_", " ")
         return f"{heading} [{name}]" if name else heading
 
+    def cells(self, subjects: Iterable[Any], unit: Mapping[str, Unit]) -> Column:
+        """A column of a table with a row for each subject."""
+        values = [self.value(each) for each in subjects]
+        name = self.short or self.heading or self.name.replace("_", " ")
+        if self.kind == "text":
+            return name, "", values
+        if self.kind == "whole":
+            return name, "", [self.unknown if value is None else f"{value:,}" for value in values]
+        of_kind = PERCENT if self.kind == "share" else unit.get(self.kind, PLAIN)
+        if self.kind == "angle":
+            of_kind, values = DEGREE, [from_bottom(value) if math.isfinite(value) else value for value in values]
+        return number_column(name, values, of_kind, self.digits)
+
     @property
     def schema(self) -> Schema:
         """The schema of its value in JSON."""
@@ -158,6 +175,14 @@ class Output(NamedTuple):
         if self.optional:
             found = or_null(found) if self.parts else found | {"type": [found["type"], "null"]}
         return found | ({"description": self.words} if self.words else {})
+
+
+def number_column(name: str, values: Sequence[float], unit: Unit, digits: str = ".5g") -> Column:
+    """Return a column of a table in the unit that suits all values. What is rounding beside the largest is 0."""
+    factor, label = unit.scale(values)
+    least = ROUNDING * max(filter(math.isfinite, map(abs, values)), default=0.0)
+    shown = [0.0 if abs(value) <= least else factor * value for value in values]
+    return name, label, ["-" if math.isnan(value) else format(value, digits) for value in shown]
 
 
 def document(outputs: Iterable[Output], subject: Any, unit: Mapping[str, Unit]) -> dict[str, Any]:
@@ -435,31 +460,6 @@ def cut_lines(count: int, hidden: int = 0) -> list[TableLine]:
     return [*range(first), *([LeftOut(left_out)] if left_out else []), *range(count - last, count)]
 
 
-def folded_lines(rows: np.ndarray) -> list[TableLine]:
-    """Return the lines of a table whose repeated rows become one line. There are at most :data:`MAX_ROWS` lines.
-
-    Parameters
-    ----------
-    rows : ndarray of int, shape (rows,)
-        Equal numbers for equal rows, see :func:`row_numbers`.
-    """
-    lines: list[int | Repeat] = []
-    begin = 0
-    for repeat in repeats(rows):
-        lines += [*range(begin, repeat.first), repeat]
-        begin = repeat.end
-    lines += range(begin, len(rows))
-    if len(lines) <= MAX_ROWS:
-        return [*lines]
-    first, last = lines[: MAX_ROWS // 2], lines[-MAX_ROWS // 2 :]
-    begin = last[0].first if isinstance(last[0], Repeat) else last[0]
-    return [*first, LeftOut(begin - _end(first[-1])), *last]
-
-
-def _end(line: int | Repeat) -> int:
-    return line.end if isinstance(line, Repeat) else line + 1
-
-
 def with_rows(lines: Iterable[TableLine], rows: Collection[int]) -> list[TableLine]:
     """Return the lines of a table in which these rows are not left out. Repeated rows stay one line."""
     found: list[TableLine] = []
@@ -474,14 +474,8 @@ def with_rows(lines: Iterable[TableLine], rows: Collection[int]) -> list[TableLi
             at = end
         else:
             found.append(line)
-            at = _end(line)
+            at = line.end if isinstance(line, Repeat) else line + 1
     return found
-
-
-def row_numbers(keys: Iterable[Hashable]) -> np.ndarray:
-    """Return a number for each key, shape (rows,). Equal keys have equal numbers."""
-    numbers: dict[Hashable, int] = {}
-    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
 
 
 def table(columns: Sequence[Column], hidden: int = 0) -> str:
@@ -558,36 +552,3 @@ def _repeat_words(heading: str, names: Sequence[str], repeat: Repeat) -> str:
     plural = f"{heading}s {before[0]} to {before[1]}" if repeat.period > 1 else f"{heading} {before[1]}"
     times = "once" if repeat.times == 1 else f"{repeat.times:,} times"
     return f"{names[repeat.first]} to {last}: repeat {plural}, {times}"
-
-
-def repeats(rows: np.ndarray) -> list[Repeat]:
-    """Find the rows that repeat the rows before them, in order.
-
-    Parameters
-    ----------
-    rows : ndarray of int, shape (rows,)
-        Equal numbers for equal rows.
-    """
-    found = []
-    row = 0
-    while row < len(rows):
-        repeat = _repeat_at(rows[row:])
-        if repeat is None:
-            row += 1
-        else:
-            found.append(repeat._replace(first=row + repeat.first))
-            row = found[-1].end
-    return found
-
-
-def _repeat_at(rows: np.ndarray) -> Repeat | None:
-    """The longest repeats of a period that begins with the first of some rows. None if they are too few."""
-    found, longest = None, LEAST_REPEATED - 1
-    for period in (np.flatnonzero(rows[1 : LONGEST_PERIOD + 1] == rows[0]) + 1).tolist():
-        if not np.array_equal(rows[:period], rows[period : 2 * period]):
-            continue
-        same = rows[:-period] == rows[period:]
-        times = (len(same) if same.all() else int(np.argmin(same))) // period
-        if times * period > longest:
-            found, longest = Repeat(period, period, times), times * period
-    return found

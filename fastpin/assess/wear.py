@@ -110,15 +110,9 @@ def cycle_lines(result: WearResult) -> list[outputs.TableLine]:
 def cycle_columns(result: WearResult) -> list[outputs.Column]:
     """Return the columns of the table of all chosen cycles."""
     unit = units(result.problem)
-    columns: list[outputs.Column] = [("cycle", "", [f"{each.cycle:,}" for each in result])]
-    for each in outputs.chosen(WORN, ("depth", "volume", "energy_per_cycle", "largest_pressure")).values():
-        values = [each.value(one) for one in result]
-        factor, label = unit[each.kind].scale(values)
-        columns.append((each.short or each.name, label, [f"{factor * value:.5g}" for value in values]))
-    shares = ["-" if np.isnan(each.pin_share) else f"{100.0 * each.pin_share:.3g}" for each in result]
-    columns.append(("of the pin", "%", shares))
-    columns.append(("solved", "", [f"{each.solved:,}" for each in result]))
-    return columns
+    of_pin = outputs.Output("pin_share", "share", short="of the pin", digits=".3g")
+    shown = ("cycle", "depth", "volume", "energy_per_cycle", "largest_pressure", "pin_share", "solved")
+    return [each.cells(result, unit) for each in outputs.chosen((*COUNTS, *WORN, of_pin), shown).values()]
 
 
 def coefficient_words(result: WearResult) -> dict[str, str]:

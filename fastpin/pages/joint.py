@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.assess.outputs import MAX_ROWS, Column
+from fastpin.assess.outputs import MAX_ROWS, PERCENT, Column, number_column
 from fastpin.casefile.toml_text import read_text
 from fastpin.cracks import Growth
 from fastpin.errors import CaseFileError, InputError
@@ -28,6 +28,7 @@ from fastpin.model import ties
 from fastpin.model.case import About
 from fastpin.model.checks import file_path
 from fastpin.model.doubts import pressure_doubts
+from fastpin.model.units import PLAIN
 from fastpin.pages import sections
 from fastpin.pages.content import Album, Facts, Items, Listing, Page, PageSection, SectionPart, Table, Text
 from fastpin.pages.source import PageParts, Source, merged, now, origin_of, sentence
@@ -364,13 +365,11 @@ def holes(source: JointSource) -> PageSection:
     states = {place: result[place] for place in set(points.values())}
     for name in ("share", "bypass", "kt_gross", "kt_net"):
         found = [QUANTITIES[name].of(states[points[plate]], pin, plate) for pin, plate in at]
-        factor, label = (100.0, "%") if name == "share" else (1.0, "")
-        if name == "bypass":
-            factor, label = unit["force"].scale([each for each in found if math.isfinite(each)])
-        cells = [f"{factor * each:.4g}" if math.isfinite(each) else "-" for each in found]
-        unsure = [name.startswith("kt") and not row["resolved"] for row in source.rows]
+        of_name = {"share": PERCENT, "bypass": unit["force"]}.get(name, PLAIN)
+        name, label, cells = number_column(name.replace("kt_", "Kt "), found, of_name, ".4g")
+        unsure = [name.startswith("Kt") and not row["resolved"] for row in source.rows]
         marks = [report.UNRESOLVED * (each and cell != "-") for each, cell in zip(unsure, cells, strict=True)]
-        columns.append((name.replace("kt_", "Kt "), label, [f"{a}{b}" for a, b in zip(cells, marks, strict=True)]))
+        columns.append((name, label, [f"{a}{b}" for a, b in zip(cells, marks, strict=True)]))
     parts.append(Table("At the largest force of the pins on each plate", columns))
     words = (
         "Bypass is the force in the plate that passes the hole: that of the pins ahead. Kt is the largest hoop stress "

@@ -13,7 +13,18 @@ from fastpin.joints import JointPin, JointPlate, JointState
 from fastpin.joints.result import JointInterface, interfaces_of
 from fastpin.model.points import owner_of
 from fastpin.model.units import units
-from fastpin.report.joints import Judged, bending_rows, contact_rows, faying_row, joint_units, largest_pressure
+from fastpin.report.joints import (
+    BENDING,
+    FAYING,
+    LARGEST,
+    NAMES,
+    Judged,
+    bending_rows,
+    contact_rows,
+    faying_rows,
+    joint_units,
+    largest_pressure,
+)
 from fastpin.states.margins import smallest_margin
 from fastpin.states.state import State
 
@@ -78,41 +89,6 @@ CONTACT = (
 )  # fmt: skip
 """Outputs of a :class:`JointContact`."""
 
-NAMES = (Output("pin", "text"), Output("plate", "text"))
-"""Outputs of something where a pin goes through a plate."""
-
-LARGEST = (
-    *NAMES,
-    Output("touched", "whole", optional=True),
-    Output("force", "force"),
-    *outputs.numbers("pressure hoop", "traction"),
-    Output("hoop_angle", optional=True),
-    Output("hoop_step", "whole"),
-    Output("resolved", "truth"),
-    Output("slip", "displacement"),
-    Output("dissipation", "energy"),
-)
-"""Outputs of a :func:`contact_row`."""
-
-FAYING = (
-    Output("pin", "text"),
-    Output("plates", form=list_of(TEXT, 2)),
-    *outputs.numbers("force", "force"),
-    Output("used"),
-    Output("step", "whole"),
-    Output("slip", "displacement"),
-    Output("dissipation", "energy"),
-)
-"""Outputs of a :func:`faying_row`."""
-
-
-RUBBED = (
-    *FAYING[:2],  # the names
-    *(Output(name, form=list_of(NUMBER, 2)) for name in ("force", "slip")),
-    Output("dissipation", "energy"),
-)
-"""Outputs of a faying surface in a state."""
-
 
 def _rubbed(state: JointState) -> list[dict[str, Any]]:
     """The faying surfaces of a state: force and slip in printed units, energy in J."""
@@ -139,13 +115,16 @@ JOINT_STATE = (
         "contacts", "list", lambda state: [JointContact(state, each) for each in interfaces_of(state.joint)],
         parts=CONTACT,
     ),
-    Output("faying", "list", _rubbed, parts=RUBBED),
+    Output(
+        "faying", "list", _rubbed,
+        parts=(
+            *FAYING[:2],  # the names
+            *(Output(name, form=list_of(NUMBER, 2)) for name in ("force", "slip")), Output("dissipation", "energy"),
+        ),
+    ),
     Output("residuals", form=map_of(NUMBER, "violations of the conditions of contact and equilibrium")),
 )  # fmt: skip
 """Outputs of a state of a joint."""
-
-BODY = (*NAMES, *fatigue.DAMAGE, Output("over_yield", optional=True))
-"""Outputs of the damage of a plate or of a pin, where the pin goes through the plate."""
 
 
 def _margins(judged: Judged) -> list[dict[str, Any]]:
@@ -186,33 +165,19 @@ JOINT = (
     Output("complete", "truth", lambda judged: judged.is_complete),
     Output("snaps", "whole", lambda judged: judged.result.snaps),
     Output("seconds", of=lambda judged: judged.result.seconds),
-    Output(
-        "largest", "list",
-        lambda judged: contact_rows(judged.result),
-        parts=LARGEST,
-    ),
-    Output(
-        "largest_faying", "list",
-        lambda judged: [
-            faying_row(judged.result, place)
-            for place in range(len(judged.result.joint.faying) * bool(len(judged.result)))
-        ],
-        parts=FAYING,
-    ),
-    Output(
-        "bending", "list", lambda judged: bending_rows(judged.result) if len(judged.result) else [], optional=True,
-        parts=(
-            Output("pin", "text"), Output("moment", "moment"), Output("stress", "traction"),
-            Output("place", "length"), Output("step", "whole"),
-        ),
-    ),
+    Output("largest", "list", lambda judged: contact_rows(judged.result), parts=LARGEST),
+    Output("largest_faying", "list", lambda judged: faying_rows(judged.result), parts=FAYING),
+    Output("bending", "list", lambda judged: bending_rows(judged.result), optional=True, parts=BENDING),
     Output("margins", of=_margins, form=list_of(schema_of((*NAMES, *margins.ROW)))),
     Output(
         "fatigue", of=lambda judged: None if judged.how is None else judged, optional=True,
         parts=(
             Output("how", of=lambda judged: judged.how, parts=fatigue.HOW),
             Output("error", "text", lambda judged: judged.reason or None, optional=True),
-            Output("bodies", of=_bodies, form=list_of(schema_of(BODY))),
+            Output(
+                "bodies", of=_bodies,
+                form=list_of(schema_of((*NAMES, *fatigue.DAMAGE, Output("over_yield", optional=True)))),
+            ),
         ),
     ),
     Output(

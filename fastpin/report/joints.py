@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fastpin.assess import crack, fatigue, outputs
-from fastpin.assess.outputs import Column, table
+from fastpin.assess.outputs import PERCENT, Column, Output, number_column, table
 from fastpin.cracks import Growth
 from fastpin.errors import InputError
 from fastpin.joints import (
@@ -24,7 +24,7 @@ from fastpin.joints import (
 )
 from fastpin.joints.pins import BEAM, whole_name
 from fastpin.joints.result import JointInterface, interfaces_of
-from fastpin.model import angles, ties
+from fastpin.model import ties
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.doubts import doubts_given
 from fastpin.model.points import owner_of, point_words
@@ -44,6 +44,44 @@ ROUNDED = 1e-12
 
 UNRESOLVED = " (not resolved)"
 """Words beside a value that the nodes do not resolve."""
+
+
+NAMES = (Output("pin", "text"), Output("plate", "text"))
+"""Outputs of something where a pin goes through a plate."""
+
+LARGEST = (
+    *NAMES,
+    Output("touched", "whole", optional=True, short="first contact", unknown="never"),
+    Output("force", "force", short="largest force"),
+    Output("pressure", "traction", short="largest p"),
+    Output("hoop", "traction", short="largest hoop"),
+    Output("hoop_angle", optional=True),
+    Output("hoop_step", "whole", short="load point"),
+    Output("resolved", "truth"),
+    Output("slip", "displacement"),
+    Output("dissipation", "energy", short="dissipated"),
+)
+"""Outputs of a :func:`contact_row`."""
+
+FAYING = (
+    Output("pin", "text"),
+    Output("plates", form=outputs.list_of(outputs.TEXT, 2)),
+    Output("force", "force", short="largest friction"),
+    Output("used", "share", short="of the limit", digits=".4g"),
+    Output("step", "whole", short="load point"),
+    Output("slip", "displacement"),
+    Output("dissipation", "energy", short="dissipated"),
+)
+"""Outputs of a row of :func:`faying_rows`."""
+
+BENDING = (
+    Output("pin", "text"),
+    Output("moment", "moment", short="largest moment"),
+    Output("stress", "traction", short="bending stress"),
+    Output("place", "length", short="from its end"),
+    Output("step", "whole", short="load point"),
+)
+"""Outputs of a row of :func:`bending_rows`."""
 
 
 class Judged(NamedTuple):
@@ -159,66 +197,51 @@ def forces_columns(result: JointResult) -> list[Column]:
     for name in joint.load_names:
         values = [state.load[name] for state in states]
         if any(values):
-            columns.append(_column(name, values, unit[joint.load_kind(name)]))
+            columns.append(number_column(name, values, unit[joint.load_kind(name)]))
     for place, plate in enumerate(joint.plates):
         for k, axis in enumerate("xy"):
             values = [float(moved_by(state, place)[k]) for state in states]
             if axis not in plate.moves and not plate.floats:
                 continue
-            columns.append(_column(f"u {plate.name}.{axis}", values, unit["displacement"]))
+            columns.append(number_column(f"u {plate.name}.{axis}", values, unit["displacement"]))
     for pin in joint.pins:
         values = pin_forces(result, pin)
-        columns.append(_column(f"{pin.name} on {pin.plates[0]}", values, unit["force"]))
+        columns.append(number_column(f"{pin.name} on {pin.plates[0]}", values, unit["force"]))
         shares = [state.shares(pin.plates[0])[pin.name] for state in states]
         if not all(math.isnan(share) for share in shares):
-            columns.append(("share", "%", ["-" if math.isnan(share) else f"{100 * share:.3g}" for share in shares]))
+            columns.append(number_column("share", shares, PERCENT, ".3g"))
     for place, surface in enumerate(joint.faying):
         for k, axis in enumerate("xy"):
             values = [float(state.faying[place].force[k]) for state in states]
             if max(map(abs, values)) > SLIGHT * surface.clamp.limit:
-                columns.append(_column(f"friction {surface}.{axis}", values, unit["force"]))
+                columns.append(number_column(f"friction {surface}.{axis}", values, unit["force"]))
     return columns
 
 
 def largest_columns(joint: Joint, rows: list[dict[str, Any]]) -> list[Column]:
     """Return what is largest of all states at each pin in each plate, from the :func:`contact_row` of each."""
-    columns: list[Column] = [(name, "", [row[name] for row in rows]) for name in ("pin", "plate")]
-    columns.append(("first contact", "", ["never" if row["touched"] is None else str(row["touched"]) for row in rows]))
     unit = joint_units(joint)
-    for key, name, kind in (("force", "largest force", "force"), ("pressure", "largest p", "traction")):
-        columns.append(_column(name, [row[key] for row in rows], unit[kind]))
-    factor, label = unit["traction"].scale([row["hoop"] for row in rows])
-    words = [f"{factor * row['hoop']:.5g}{'' if row['resolved'] else UNRESOLVED}" for row in rows]
-    columns.append(("largest hoop", label, words))
-    at = [row["hoop_angle"] for row in rows]
-    columns.append(("at", "deg", ["-" if math.isnan(each) else f"{angles.from_bottom(each):z.1f}" for each in at]))
-    columns.append(("load point", "", [str(row["hoop_step"]) for row in rows]))
-    columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
-    columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
-    return columns
+    shown = [
+        each._replace(kind="angle", short="at", digits="z.1f") if each.name == "hoop_angle" else each
+        for each in LARGEST
+        if each.name != "resolved"
+    ]
+    columns = {each.name: each.cells(rows, unit) for each in shown}
+    name, label, cells = columns["hoop"]
+    marks = ["" if row["resolved"] else UNRESOLVED for row in rows]
+    return [*(columns | {"hoop": (name, label, [a + b for a, b in zip(cells, marks, strict=True)])}).values()]
 
 
 def faying_columns(result: JointResult) -> list[Column]:
     """Return what is largest of all states at each faying surface of clamped plates."""
-    rows, unit = [faying_row(result, place) for place in range(len(result.joint.faying))], joint_units(result.joint)
-    columns: list[Column] = [("pin", "", [row["pin"] for row in rows])]
-    columns.append(("faying surface", "", ["-".join(row["plates"]) for row in rows]))
-    columns.append(_column("largest friction", [row["force"] for row in rows], unit["force"]))
-    columns.append(("of the limit", "%", [f"{100.0 * row['used']:.4g}" for row in rows]))
-    columns.append(("load point", "", [str(row["step"]) for row in rows]))
-    columns.append(_column("slip", [row["slip"] for row in rows], unit["displacement"]))
-    columns.append(_column("dissipated", [row["dissipation"] for row in rows], unit["energy"]))
-    return columns
+    rows, unit = faying_rows(result), joint_units(result.joint)
+    pin, *others = (each.cells(rows, unit) for each in FAYING if each.name != "plates")
+    return [pin, ("faying surface", "", ["-".join(row["plates"]) for row in rows]), *others]
 
 
 def bending_columns(joint: Joint, rows: list[dict[str, Any]]) -> list[Column]:
     """Return the largest bending of each pin that is a beam."""
-    unit = joint_units(joint)
-    columns: list[Column] = [("pin", "", [row["pin"] for row in rows])]
-    shown = {"moment": ("largest moment", "moment"), "stress": ("bending stress", "traction")}
-    for key, (name, kind) in (shown | {"place": ("from its end", "length")}).items():
-        columns.append(_column(name, [row[key] for row in rows], unit[kind]))
-    return [*columns, ("load point", "", [str(row["step"]) for row in rows])]
+    return [each.cells(rows, joint_units(joint)) for each in BENDING]
 
 
 def bending_rows(result: JointResult) -> list[dict[str, Any]]:
@@ -227,7 +250,7 @@ def bending_rows(result: JointResult) -> list[dict[str, Any]]:
     The place counts along the pin from its end in its first plate. The pin has the radius of the hole.
     """
     rows = []
-    for pin in (pin for pin in result.joint.pins if pin.flexibility == BEAM):
+    for pin in (pin for pin in result.joint.pins if pin.flexibility == BEAM and len(result)):
         found = [state.bending(pin.name) for state in result.states.bare]
         sizes = np.array([np.hypot(*moments.T) for _, moments in found])
         step, at = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
@@ -365,23 +388,25 @@ def contact_row(result: JointResult, at: JointInterface) -> dict[str, Any]:
     }
 
 
-def faying_row(result: JointResult, place: int) -> dict[str, Any]:
-    """What is largest of all states at one faying surface, SI. Load points count from 1.
+def faying_rows(result: JointResult) -> list[dict[str, Any]]:
+    """What is largest of all states at each faying surface, SI; none without a state. Load points count from 1.
 
     The friction in parts of its limit is 1 where the surface slips, and up to 1.02 between the sides of its polygon.
     """
-    surface, states = result.joint.faying[place], result.states.bare
-    forces = [float(np.hypot(*state.faying[place].force)) for state in states]
-    top = ties.top(forces)
-    return {
-        "pin": surface.pin,
-        "plates": [surface.plate, surface.other],
-        "force": forces[top],
-        "used": forces[top] / surface.clamp.limit,
-        "step": top + 1,
-        "slip": max(float(np.hypot(*state.faying[place].slip)) for state in states),
-        "dissipation": states[-1].faying[place].dissipation,
-    }
+    rows, states = [], result.states.bare
+    for place, surface in enumerate(result.joint.faying if states else ()):
+        forces = [float(np.hypot(*state.faying[place].force)) for state in states]
+        top = ties.top(forces)
+        rows.append({
+            "pin": surface.pin,
+            "plates": [surface.plate, surface.other],
+            "force": forces[top],
+            "used": forces[top] / surface.clamp.limit,
+            "step": top + 1,
+            "slip": max(float(np.hypot(*state.faying[place].slip)) for state in states),
+            "dissipation": states[-1].faying[place].dissipation,
+        })  # fmt: skip
+    return rows
 
 
 def largest_pressure(contact: State) -> float:
@@ -392,9 +417,3 @@ def largest_pressure(contact: State) -> float:
 def joint_units(joint: Joint) -> Mapping[str, Unit]:
     """Return the unit of every kind of quantity in the printed texts of a joint; values are of whole plates."""
     return units_of(joint.unit_system, True)
-
-
-def _column(name: str, values: list[float], unit: Unit) -> Column:
-    factor, label = unit.scale(values)
-    largest = max(map(abs, values), default=0.0)
-    return name, label, [f"{factor * value:.5g}" if abs(value) > 1e-9 * largest else "0" for value in values]

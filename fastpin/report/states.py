@@ -6,7 +6,7 @@ Angles are in degrees from the bottom of the hole, counter-clockwise positive (t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -39,6 +39,12 @@ IN_PHASE = 1e-9
 """Largest difference of two load points, in cycles, that is rounding. A larger one only lets more states be read."""
 
 _DEGREE = math.degrees(1.0)
+
+LEAST_REPEATED = 3
+"""Least rows that one line replaces: of fewer rows the table is as short."""
+
+LONGEST_PERIOD = 1_000
+"""Most rows of a period that is looked for: a table of more rows is cut before it repeats itself."""
 
 COUNTED = {
     "jumps": "the pin snapped {count} times; work does not balance there",
@@ -109,20 +115,81 @@ def table_rows(
     """
     if points is None:
         points = np.array([load_point(state) for state in states])
-    same = outputs.row_numbers(map(_identity, states))
+    same = row_numbers(map(_identity, states))
     numbers, first = np.unique(same, return_index=True)
     rows = same if rows is None else same[rows]
     if numbers.size > MOST_COMPARED:
         return TableRows(outputs.with_rows(outputs.cut_lines(rows.size), wanted), points)
     given = [name for name in LOADS if name not in problem.reactions]
     given_loads = (tuple(state.load[name] for name in given) for state in states)
-    if numbers.size < rows.size or outputs.repeats(outputs.row_numbers(given_loads)):
+    if numbers.size < rows.size or repeats(row_numbers(given_loads)):
         columns = _compared_columns(problem, [states[place] for place in first.tolist()])
         # A state differs from the same state one cycle before in its number, in a sum, and by rounding.
         own = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
         cells = zip(*(cells for name, _, cells in columns if name not in own), strict=True)
-        rows = outputs.row_numbers(cells)[rows]
-    return TableRows(outputs.with_rows(outputs.folded_lines(rows), wanted), points)
+        rows = row_numbers(cells)[rows]
+    return TableRows(outputs.with_rows(folded_lines(rows), wanted), points)
+
+
+def folded_lines(rows: np.ndarray) -> list[outputs.TableLine]:
+    """Return the lines of a table whose repeated rows become one line. They are at most ``MAX_ROWS`` lines.
+
+    Parameters
+    ----------
+    rows : ndarray of int, shape (rows,)
+        Equal numbers for equal rows, see :func:`row_numbers`.
+    """
+    lines: list[int | outputs.Repeat] = []
+    begin = 0
+    for repeat in repeats(rows):
+        lines += [*range(begin, repeat.first), repeat]
+        begin = repeat.end
+    lines += range(begin, len(rows))
+    if len(lines) <= outputs.MAX_ROWS:
+        return [*lines]
+    first, last = lines[: outputs.MAX_ROWS // 2], lines[-outputs.MAX_ROWS // 2 :]
+    end = first[-1].end if isinstance(first[-1], outputs.Repeat) else first[-1] + 1
+    begin = last[0].first if isinstance(last[0], outputs.Repeat) else last[0]
+    return [*first, outputs.LeftOut(begin - end), *last]
+
+
+def row_numbers(keys: Iterable[Hashable]) -> np.ndarray:
+    """Return a number for each key, shape (rows,). Equal keys have equal numbers."""
+    numbers: dict[Hashable, int] = {}
+    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
+
+
+def repeats(rows: np.ndarray) -> list[outputs.Repeat]:
+    """Find the rows that repeat the rows before them, in order.
+
+    Parameters
+    ----------
+    rows : ndarray of int, shape (rows,)
+        Equal numbers for equal rows.
+    """
+    found = []
+    row = 0
+    while row < len(rows):
+        repeat = _repeat_at(rows[row:])
+        if repeat is None:
+            row += 1
+        else:
+            found.append(repeat._replace(first=row + repeat.first))
+            row = found[-1].end
+    return found
+
+
+def _repeat_at(rows: np.ndarray) -> outputs.Repeat | None:
+    """The longest repeats of a period that begins with the first of some rows. None if they are too few."""
+    found, longest = None, LEAST_REPEATED - 1
+    for period in (np.flatnonzero(rows[1 : LONGEST_PERIOD + 1] == rows[0]) + 1).tolist():
+        if not np.array_equal(rows[:period], rows[period : 2 * period]):
+            continue
+        same = rows[:-period] == rows[period:]
+        times = (len(same) if same.all() else int(np.argmin(same))) // period
+        if times * period > longest:
+            found, longest = outputs.Repeat(period, period, times), times * period
+    return found
 
 
 def stored_rows(

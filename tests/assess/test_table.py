@@ -11,15 +11,13 @@ from fastpin.assess.outputs import (
     MAX_ROWS,
     LeftOut,
     Repeat,
-    folded_lines,
     printed_rows,
-    row_numbers,
     table,
     table_of_lines,
     with_rows,
 )
 from fastpin.casefile import EXAMPLE, parse_case
-from fastpin.report.states import state_table, stored_rows
+from fastpin.report.states import folded_lines, row_numbers, state_table, stored_rows
 from fastpin.states.quantities import load_point
 from tests.support.samples import sample_result
 from tests.support.tiers import gate
