@@ -19,7 +19,14 @@ from fastpin.joints.system import PinsSystem
 from fastpin.kernels import exchange
 from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.solver.configuration import Configuration, accept_solution, resting_status, solve_statuses
+from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
+    Configuration,
+    accept_solution,
+    resting_status,
+    solve_statuses,
+    worst_residual,
+)
 from fastpin.solver.errors import OPENED, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.solver.increment import accepted, implicit_step
 from fastpin.solver.path import PathStep, StepLostError
@@ -173,17 +180,20 @@ def _beyond(
 ) -> tuple[Configuration, float] | None:
     """A state a little beyond a snap, and the fraction of the step at which it lies; None if none was found.
 
-    Pins let go all together, then together with the loose ones, then one by one; first with few iterations, then with
-    many. Lemke's method takes most of the time, so it comes last.
+    Pins let go along a path, then by increments: all together, together with the loose ones, then one by one; first
+    with few iterations, then with many. Lemke's method takes most of the time, so it comes last.
     """
     is_bare = float(np.abs(system.passed(now.tractions)).max()) <= NOTHING
     near, ways = (partial(finite_step, by_lemke=False), JUMPS[1:]), list[Any]([(_closing, JUMPS)])
+    pins = range(len(system.pins))
+    fewer = [set(pins), *({pin} for pin in pins)]
+    paths = [(partial(_unloaded_along, pins=each), JUMPS[1:2]) for each in (None, *fewer)]
+    ways += [] if is_bare else [near, *paths]
     for patient in (False, True):
         release = partial(_released, patient=patient)
-        releases = [(partial(release, back=back), JUMPS[1:]) for back in BACK]
-        ways += [*releases, near] if is_bare else [near, *releases]
-        pins = range(len(system.pins))
-        ways += [(partial(release, back=0.0, pins=each), JUMPS) for each in (set(pins), *({pin} for pin in pins))]
+        ways += [(partial(release, back=back), JUMPS[1:]) for back in BACK]
+        ways += [(partial(release, back=0.0, pins=each), JUMPS) for each in fewer]
+    ways += [near] if is_bare else []
     for way, jumps in (*ways, (partial(creep, on_springs=_on_springs), JUMPS[1:])):
         for jump in jumps:
             reached = min(done + jump, 1.0)
@@ -208,12 +218,11 @@ def _closing(system: PinsSystem, start: Configuration, load: np.ndarray) -> Conf
     return accepted(system, start, implicit_step(system, begun, load, patient=False)) if closing else None
 
 
-def _released(
-    system: PinsSystem, start: Configuration, load: np.ndarray, back: float, patient: bool, pins: Set[int] | None = None
-) -> Configuration | None:
-    """A state at `load` in which contacts that carried next to nothing have let go: all, or those of some `pins`.
+def _loosened(system: PinsSystem, start: Configuration, back: float, pins: Set[int] | None) -> Configuration | None:
+    """The configuration `start` without the tractions of contacts that carry next to nothing; None if there are none.
 
-    Their pins rest where they are, or a part `back` of their way from the middle back.
+    All let go, or those of some `pins`. Their pins rest where they are, or a part `back` of their way from the middle
+    back.
     """
     forces = np.abs(system.passed(start.tractions)[:, :2]).max(axis=1)
     springs = CENTRING * float(np.abs((start.motion - start.rest)[: 3 * forces.size]).max())
@@ -229,21 +238,59 @@ def _released(
         own, nodes = slice(3 * place, 3 * place + 3), system.nodes.parts[place]
         rest[own], loose.status[nodes] = (1.0 - back) * start.motion[own], OPEN
         loose.pressure[nodes] = loose.shear[nodes] = 0.0
-    held, loose = system.resting(rest), replace(loose, rest=rest)
+    return replace(loose, rest=rest)
+
+
+def _unloaded_along(
+    system: PinsSystem, start: Configuration, load: np.ndarray, pins: Set[int] | None
+) -> Configuration | None:
+    """A state at `load` in which contacts that carried next to nothing have let go, along a path.
+
+    Their tractions become a load, which vanishes along the path. No status chatters as in an implicit increment.
+    """
+    loose = _loosened(system, start, 0.0, pins)
+    if loose is None:
+        return None
+    held = system.resting(loose.rest)
+    column = held.operator @ (start.tractions - loose.tractions)
+    balance = held.equilibrium @ loose.tractions + held.motion_rows @ loose.motion - held.load_forces(loose.load)
+    vanishing = _with_load(held, column, balance)
+    try:
+        found = PathStep(vanishing, replace(loose, load=np.r_[loose.load, 1.0]), np.r_[load, 0.0]).follow(1.0)
+    except StepLostError:
+        return None
+    found.load = load.copy()
+    return found if worst_residual(held, found) <= MAX_RESIDUAL else None
+
+
+def _released(
+    system: PinsSystem, start: Configuration, load: np.ndarray, back: float, patient: bool, pins: Set[int] | None = None
+) -> Configuration | None:
+    """A state at `load` in which contacts that carried next to nothing have let go, by one increment.
+
+    See :func:`_loosened`.
+    """
+    loose = _loosened(system, start, back, pins)
+    if loose is None:
+        return None
+    held = system.resting(loose.rest)
     if loose.closed.any():
         return accepted(held, loose, implicit_step(held, loose, load, patient))
     apart = solve_statuses(held, loose.status, loose.slip, load, loose.rest_gap)
     return None if apart is None else accepted(held, loose, accept_solution(loose, apart, load))
 
 
+def _with_load(system: PinsSystem, column: np.ndarray, force: np.ndarray) -> PinsSystem:
+    """The system with one more load: its gap and slip (2n,), and its part of the conditions (m,)."""
+    columns, forces = np.column_stack([system.loads, column]), np.column_stack([system.forces, force])
+    drive = replace(system.drive, columns=columns)
+    return replace(system, forces=forces, loads=columns, drive=drive, held_as=None)
+
+
 def _on_springs(system: PinsSystem, start: Configuration, load: np.ndarray, stiffness: float) -> Configuration | None:
     """A finite step of the pins on springs that are slack at `start`: a load of their own that acts with the size 1."""
     springs = np.where(system.of_pins, stiffness, 0.0)
-    forces = np.column_stack([system.forces, springs * start.motion])
-    columns = np.column_stack([system.loads, np.zeros(len(system.loads))])
-    held = replace(
-        system, motion_rows=system.motion_rows + np.diag(springs), forces=forces, loads=columns,
-        drive=replace(system.drive, columns=columns), held_as=None,
-    )  # fmt: skip
+    held = _with_load(system, np.zeros(len(system.loads)), springs * start.motion)
+    held = replace(held, motion_rows=system.motion_rows + np.diag(springs))
     after = finite_step(held, replace(start, load=np.r_[start.load, 0.0]), np.r_[load, 1.0])
     return None if after is None else replace(after, load=load.copy())

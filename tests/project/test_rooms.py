@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 45,
     "constants of modules": 1_272,
     "hidden imports": 0,
-    "lines of code": 54_089,
+    "lines of code": 54_120,
     "lines of code of the core": 18_528,
     "files of the core": 135,
     "functions of the core": 1_975,
