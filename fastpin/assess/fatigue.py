@@ -299,8 +299,8 @@ def assessment_words(how: FatigueAssessment) -> str:
 def fatigue_curve(found: damage.Fatigue | damage.SpectrumDamage) -> outputs.Curve:
     """Return angle, depth, parameter or damage, plane and life of the points, in the order of the angles.
 
-    Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis. The damage is
-    that of one spectrum, and its life counts spectra.
+    Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis. A damage
+    belongs to one spectrum, and the life of a damage is a number of spectra.
     """
     if isinstance(found, damage.SpectrumDamage):
         columns, passes = {f"damage by {found.criterion}": found.damage}, "spectra"

@@ -22,7 +22,7 @@ from fastpin.model.grid import LEAST_NODES
 
 
 def _maker(options: argparse.Namespace) -> Callable[[], LiveContact]:
-    """What makes the contact of a new page: that of one pin or of a joint."""
+    """Return a function that makes the contact of a new page. A joint file gives a joint, a case file one pin."""
     nodes = None if options.nodes is None else literal(options.nodes)
     if options.case is not None and joints.is_joint_file(text := read_text(options.case)):
         file = joints.read_joint(options.case)

@@ -158,13 +158,17 @@ class PortColumns(Columns):
 
     def refresh(self, asked: int, updates: int) -> None:
         """Make all `updates` in the tables. The kernel then computes the column `asked` itself."""
+        self._catch_up(updates)
+
+    def _catch_up(self, updates: int) -> None:
+        """Make all `updates` in the tables, and add up the answers that wait when their room is full."""
         while not kernels.catch_up(self._arrays, self.tableau, updates):
             add_product(self._answers.T, self._right.T, np.asfortranarray(self._left))
             self._counts[kernels.WAITING] = 0
 
     def response(self, given: np.ndarray, updates: int) -> np.ndarray:
         if updates:
-            self.refresh(-1, updates)
+            self._catch_up(updates)
         rows, waiting = self._ports.rows, slice(0, self._counts[kernels.WAITING])
         nodes = rows.shape[1]
         own = (given[rows][:, None] @ self._tables[:, :nodes])[:, 0]

@@ -74,7 +74,7 @@ class PortTables(NamedTuple):
     coupling : ndarray, shape (n,)
         Shear per pressure of each tie.
     latest : ndarray, shape (g,)
-        What the column moves that was computed last.
+        What the column moves that was computed last, with the opposite sign.
     counts : ndarray of int, shape (3,)
         See :mod:`fastpin.kernels.ports`.
     """

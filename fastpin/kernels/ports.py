@@ -17,7 +17,7 @@ DONE, WAITING, LATEST = 0, 1, 2
 
 @inner
 def _answer(ports, begin, given, moved):
-    """Set `moved` (g,) to minus the product of the answers, from the column `begin` on, and `given` (p,)."""
+    """Set `moved` (g,) to the product of the answers, from the column `begin` on, and `given` (p,)."""
     answers, left, right = ports.answers, ports.left, ports.right
     for row in range(moved.size):
         own, total, other = answers[row], 0.0, 0.0
@@ -26,14 +26,14 @@ def _answer(ports, begin, given, moved):
             other += own[begin + k + 1] * given[k + 1]
         if given.size % 2 == 1:
             total += own[begin + given.size - 1] * given[given.size - 1]
-        moved[row] = -(total + other)
+        moved[row] = total + other
     for update in range(ports.counts[WAITING]):
         factor, own = 0.0, right[update]
         for k in range(given.size):
             factor += given[k] * own[begin + k]
         own = left[update]
         for row in range(moved.size):
-            moved[row] -= factor * own[row]
+            moved[row] += factor * own[row]
 
 
 @inner
@@ -47,11 +47,9 @@ def _exchange(ports, pair, place, own):
     row[own] -= 1.0
     if ports.counts[LATEST] == pair:
         for i in range(moved.size):
-            moved[i] = -ports.latest[i]
+            moved[i] = ports.latest[i]
     else:
         _answer(ports, place * outputs, column[nodes:], moved)
-        for i in range(moved.size):
-            moved[i] = -moved[i]
     ports.counts[LATEST] = -1
     for j in range(by_row.size):
         by_row[j] = 0.0
@@ -133,17 +131,17 @@ def _set_column(ports, tableau, asked):
             at = nodes + i
             first, second, third, fourth = table[at], table[at + 1], table[at + 2], table[at + 3]
             for j in range(nodes):
-                values[j] += (a * first[j] + b * second[j]) + (c * third[j] + d * fourth[j])
+                values[j] -= (a * first[j] + b * second[j]) + (c * third[j] + d * fourth[j])
             i += 4
         while i < felt.size:
             factor, moving = moved[felt[i]], table[nodes + i]
             for j in range(nodes):
-                values[j] += factor * moving[j]
+                values[j] -= factor * moving[j]
             i += 1
         for j in range(nodes):
             out[rows[section, j]] = values[j]
     for k in range(out.size - rows.size):
-        out[rows.size + k] = moved[k]
+        out[rows.size + k] = -moved[k]
     tableau.fresh[asked] = counts[DONE]
 
 
