@@ -217,6 +217,7 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
     norm = TwoSlopeNorm(0.0, -largest, largest)
     on_plates = [state.force(pin.name, plate.name) for plate in joint.plates for pin in joint.pins_of(plate)]
     longest = max(float(np.hypot(*force)) for force in on_plates)
+    titles = []
     is_wide = (look.width - 1.6) * joint.radius / (right - left) > 0.22  # inches: names have room inside
     for place, (plate, panel) in enumerate(zip(joint.plates, sheet.axes[:, 0], strict=True)):
         for part in plate.outline:
@@ -234,17 +235,11 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
             at, style = size.factor * (pin.at - 1j * down), "center" if is_wide else "bottom"
             panel.text(at.real, at.imag, pin.name, ha="center", va=style, fontsize=7.5, parse_math=False)
         panel.set_rasterization_zorder(0.0)  # the rings of a panel are one image
-        panel.set_aspect("equal")
-        panel.set_xlim(size.factor * left, size.factor * right)
-        panel.set_ylim(size.factor * bottom, size.factor * top)
-        panel.set_ylabel(quantity("y", size.name))
         by = ", ".join(f"{size.factor * each:.3g}" for each in moved_by(state, place))
         words = f", moved by {by} {size.name}" if plate.moves else ""
         words += f"; at each hole the most stressed of {plate.slices} slices" if plate.slices > 1 else ""
-        panel.set_title(f"{plate.name}{words}", fontsize=8.5, loc="left", parse_math=False)
-    for panel in sheet.axes[:-1, 0]:
-        panel.tick_params(axis="x", length=0.0)  # they would touch the title below
-    sheet.axes[-1, 0].set_xlabel(quantity("x", size.name))
+        titles.append(f"{plate.name}{words}")
+    frame_plates(sheet, size, [size.factor * each for each in extent], titles)
     mappable = sheet.axes[0, 0].collections[0]
     label, panels = quantity("hoop stress", unit), list(sheet.axes[:, 0])
     sheet.figure.colorbar(mappable, ax=panels, label=label, shrink=0.8, pad=0.02)
@@ -291,6 +286,23 @@ def _draw_hole(
         head = centre + 0.8 * radius * force
         style: Any = {"arrowstyle": "-|>", "color": "black", "linewidth": 1.2, "shrinkA": 0.0, "shrinkB": 0.0}
         panel.annotate("", xy=(head.real, head.imag), xytext=(centre.real, centre.imag), arrowprops=style)
+
+
+def frame_plates(sheet: Sheet, size: Unit, bounds: Sequence[float], titles: Sequence[str]) -> None:
+    """Give the panels of all plates one frame, to scale, and their titles.
+
+    `bounds` are least and largest x and y in the unit `size` of lengths.
+    """
+    left, right, bottom, top = bounds
+    for panel, title in zip(sheet.axes[:, 0], titles, strict=True):
+        panel.set_aspect("equal")
+        panel.set_xlim(left, right)
+        panel.set_ylim(bottom, top)
+        panel.set_ylabel(quantity("y", size.name))
+        panel.set_title(title, fontsize=8.5, loc="left", parse_math=False)
+    for panel in sheet.axes[:-1, 0]:
+        panel.tick_params(axis="x", length=0.0)  # they would touch the title below
+    sheet.axes[-1, 0].set_xlabel(quantity("x", size.name))
 
 
 def length_unit(joint: Joint) -> Unit:

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon, Rectangle
 
 from fastpin.errors import InputError
-from fastpin.figures.joint import JointSubject, extent_of, length_unit
+from fastpin.figures.joint import JointSubject, extent_of, frame_plates, length_unit
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.sketch import (
     ALLOY,
@@ -26,7 +26,7 @@ from fastpin.figures.sketch import (
     draw_edge_load,
     hold_line,
 )
-from fastpin.figures.style import quantity, span_text
+from fastpin.figures.style import span_text
 from fastpin.joints import Joint, JointFile, JointPin, JointPlate, JointResult
 from fastpin.model.checks import as_toml
 from fastpin.report.joints import joint_units
@@ -111,22 +111,16 @@ def _draw(look: Look, joint: Joint, ranges: Mapping[str, LoadRange]) -> Sheet:
     bounds = Corners(bounds.left - room, bounds.right + room, bounds.bottom - above, bounds.top + above)
     height = max((look.width - 0.8) * (bounds.top - bounds.bottom) / (bounds.right - bounds.left), 0.8)
     sheet = look.sheet([min(height, 6.0)] * len(joint.plates), extra=1.0, sharex=True)
-    holds: dict[str, Any] = {}
+    holds, titles = dict[str, Any](), list[str]()
     for plate, panel in zip(joint.plates, sheet.axes[:, 0], strict=True):
         _draw_plate(panel, plate, size.factor, bounds, holds)
         for pin in joint.pins_of(plate):
             _draw_pin(panel, pin, plate, size.factor, bounds)
         _draw_loads(panel, joint, plate, ranges, bounds, size.factor)
-        panel.set_aspect("equal")
-        panel.set_xlim(bounds.left, bounds.right)
-        panel.set_ylim(bounds.bottom, bounds.top)
-        panel.set_ylabel(quantity("y", size.name))
         words = [plate.name, "infinite" * plate.is_infinite, MOVES[plate.moves]]
         words.append(f"{plate.slices} slices" if plate.slices > 1 else "")
-        panel.set_title(", ".join(filter(None, words)), fontsize=8.5, loc="left", parse_math=False)
-    for panel in sheet.axes[:-1, 0]:
-        panel.tick_params(axis="x", length=0.0)  # they would touch the title below
-    sheet.axes[-1, 0].set_xlabel(quantity("x", size.name))
+        titles.append(", ".join(filter(None, words)))
+    frame_plates(sheet, size, bounds, titles)
     entries = [Line2D([], [], label=HOLD_WORDS[hold], **style) for hold, style in holds.items()]
     sheet.legend(entries, max(len(entries), 1))
     sheet.head(look.title)
